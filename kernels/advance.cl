@@ -12,26 +12,51 @@ INLINE slots trouble_status(lanes counts) {
     return BITS(deep != 0, STATUS_OVERLAP) | BITS(count != deep, STATUS_UNPROBED);
 }
 
+/* Surface displacements for the next step and those of earlier steps. `history` is a ring buffer of the last
+   four steps. */
+typedef struct {
+    global real* next;
+    global const real* two_before;
+    global real* four_before; /* replaced by those of this step */
+} Displacements;
+
+INLINE Displacements displacements_of(int step, size_t slot_count, global const Replica* restrict replica,
+                                      global real* next, global real* history) {
+    const int turn = replica->steps_before + step;
+    return (Displacements){next, history + ((turn + 2) & 3) * slot_count, history + (turn & 3) * slot_count};
+}
+
 #if LANES == 16
-/* Requests what the next 16 grains will gather. If the state of a batch, about 1 kB per grain, exceeds the
-   caches of the processor, a gather would wait for memory; in smaller batches these instructions would only
+/* Requests what the next 16 grains will read. If the state of a batch, about 1 kB per grain, exceeds the
+   caches of the processor, they would wait for memory; in smaller batches these instructions would only
    take time. PoCL's `prefetch` has no code. */
 #define CACHED_SLOTS (1 << 19)
 #ifdef __x86_64__
 #define PREFETCH(address) __asm__ volatile("prefetcht0 (%0)" : : "r"(address))
 #else
-#define PREFETCH(address) prefetch((global const int*)(address), 1)
+#define PREFETCH(address) prefetch((global const char*)(address), 1)
 #endif
-INLINE void prefetch_neighbours(Grain at, Batch batch, size_t slot_count) {
+INLINE void prefetch_next(Grain at, Batch batch, Displacements surfaces, size_t slot_count) {
     const size_t next = at.row + LANES * SLOTS;
     if (slot_count <= CACHED_SLOTS || next >= slot_count) return;
+    const bool moves = at.replica->surface != SURFACE_RIGID;
+    for (int c = 0; c < (moves ? at.count : 0); ++c) {
+        const size_t slot = SLOT_PLACE(next, c);
+        PREFETCH(batch.displacement + slot);
+        PREFETCH(surfaces.two_before + slot);
+        PREFETCH(surfaces.four_before + slot);
+        PREFETCH(surfaces.next + slot);
+    }
     for (int c = 0; c < at.count * LANES; ++c) {
-        PREFETCH(batch.motion + max(batch.partner[next + c], 0));
-        if (at.replica->surface != SURFACE_RIGID) PREFETCH(batch.displacement + batch.partner_slot[next + c]);
+        /* A Motion is in one cache line or in two. */
+        global const char* motion = (global const char*)(batch.motion + max(batch.partner[next + c], 0));
+        PREFETCH(motion);
+        PREFETCH(motion + sizeof(Motion) - 1);
+        if (moves) PREFETCH(batch.displacement + batch.partner_slot[next + c]);
     }
 }
 #else
-#define prefetch_neighbours(at, batch, slot_count)
+#define prefetch_next(at, batch, surfaces, slot_count)
 #endif
 
 /* Contact forces of a grain and their sums; writes the contacts to `table` for the surface displacements.
@@ -81,19 +106,16 @@ INLINE void surface_displacements(Grain at, EXCHANGE ContactTable* table, lanes*
 /* Surface displacements by the contact forces of this step, extrapolated to the next step:
      b(t + dt) = (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6.
    The phase error 8/3 sin^5(omega dt) is small, so the delay adds or removes little energy. The iteration is
-   stable for gains from -1 to 1, as without extrapolation (ARCHITECTURE.md). `history` is a ring buffer of
-   the last four steps with `slot_count` values per step; `step` is the replica's step number. */
-INLINE void displace_surfaces(Grain at, EXCHANGE ContactTable* table, int step, size_t slot_count,
-                              global real* restrict displacement_next, global real* restrict history) {
-    global const real* two_before = history + ((step + 2) & 3) * slot_count;
-    global real* four_before = history + (step & 3) * slot_count;
+   stable for gains from -1 to 1, as without extrapolation (ARCHITECTURE.md). */
+INLINE void displace_surfaces(Grain at, EXCHANGE ContactTable* table, Displacements surfaces) {
     lanes now[SLOTS_HERE];
     surface_displacements(at, table, now);
     for (int v = 0; v < at.count; ++v) {
-        const lanes two = load_slot(two_before, at.row, v), four = load_slot(four_before, at.row, v);
-        store_slot((R(10) / R(6)) * now[v] - (R(5) / R(6)) * two + (R(1) / R(6)) * four, displacement_next,
+        const lanes two = load_slot(surfaces.two_before, at.row, v),
+                    four = load_slot(surfaces.four_before, at.row, v);
+        store_slot((R(10) / R(6)) * now[v] - (R(5) / R(6)) * two + (R(1) / R(6)) * four, surfaces.next,
                    at.row, v);
-        store_slot(now[v], four_before, at.row, v);
+        store_slot(now[v], surfaces.four_before, at.row, v);
     }
 }
 
@@ -105,18 +127,6 @@ INLINE void keep_state(Grain at, slots grain, Batch batch, global Motion* restri
     if (at.replica->surface == SURFACE_RIGID) return;
     for (int v = 0; v < at.count; ++v)
         store_slot(load_slot(batch.displacement, at.row, v), displacement_next, at.row, v);
-}
-
-/* Sets status bits grain by grain; this is rare, so it need not be fast. */
-INLINE void report_status(int first, slots bits, global int* restrict status) {
-#if LANES == 16
-    int each[LANES];
-    vstore16(bits, 0, each);
-    for (int lane = 0; lane < LANES; ++lane)
-        if (each[lane]) status[first + lane] |= each[lane];
-#else
-    status[first] |= bits;
-#endif
 }
 
 /* Integrates and stores the new state. Stops the replica after this step if a grain has a status bit or has
@@ -165,7 +175,8 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
 
     slots partners[SLOTS_HERE];
     at.count = load_partners(partner, at.row, partners);
-    prefetch_neighbours(at, batch, slot_count);
+    prefetch_next(at, batch, displacements_of(step, slot_count, replica, displacement_next, history),
+                  slot_count);
     /* Inlined twice; the copy with the constant 0 contains no code for effects. */
     const GrainSums sums = RARELY(replica->effects)
                                ? contact_sums(at, replica->effects, batch, partners, table)
@@ -173,7 +184,7 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
     share_sums(sums, scratch);
     SYNCHRONISE();
     if (replica->surface != SURFACE_RIGID)
-        displace_surfaces(at, table, replica->steps_before + step, slot_count, displacement_next, history);
+        displace_surfaces(at, table, displacements_of(step, slot_count, replica, displacement_next, history));
 
     const GrainSums total = add_up(sums, scratch);
     if (IS_LEADER) finish_step(at, grain, total, step, motion_next, track, status, stop_at + r);

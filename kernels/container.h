@@ -93,14 +93,16 @@ INLINE lanes3 side_foot(global const Replica* restrict replica, lanes3 point) {
                     point.z};
 }
 
-/* Distance of a point from side wall 0 to 3; infinite if the container has no such wall. */
-INLINE real side_distance(global const Replica* restrict replica, int wall, real4 point) {
-    if (replica->container >= CONTAINER_PERIODIC) return INFINITY;
+/* Distance of points from side wall 0 to 3; infinite if the container has no such wall. */
+INLINE lanes side_distance(global const Replica* restrict replica, int wall, lanes3 point) {
+    if (replica->container >= CONTAINER_PERIODIC) return R(INFINITY);
     if (replica->container == CONTAINER_CYLINDER) {
-        const real2 out = point.xy - cylinder_radius(replica);
-        return wall == 0 ? cylinder_radius(replica) - sqrt(out.x * out.x + out.y * out.y) : R(INFINITY);
+        const lanes x = point.x - cylinder_radius(replica), y = point.y - cylinder_radius(replica);
+        if (wall != 0) return R(INFINITY);
+        return cylinder_radius(replica) - sqrt(x * x + y * y);
     }
-    const real coordinate = wall < 2 ? point.x : point.y, place = replica->wall_position[wall];
+    const lanes coordinate = wall < 2 ? point.x : point.y;
+    const real place = replica->wall_position[wall];
     return wall % 2 ? place - coordinate : coordinate - place;
 }
 

@@ -101,6 +101,18 @@ INLINE Displaced displaced(Grain at, Batch batch, Neighbours neighbour, int v) {
     return b;
 }
 
+/* Sets status bits grain by grain; this is rare, so it need not be fast. */
+INLINE void report_status(int first, slots bits, global int* restrict status) {
+#if LANES == 16
+    int each[LANES];
+    vstore16(bits, 0, each);
+    for (int lane = 0; lane < LANES; ++lane)
+        if (each[lane]) status[first + lane] |= each[lane];
+#else
+    status[first] |= bits;
+#endif
+}
+
 /* Displacement of the grains since the neighbour list was built. */
 INLINE lanes3 way_since_listed(Grain at, global const Track* restrict track, slots grain, lanes3 position) {
     const lanes4 listed = gather4((global const real4*)track, grain * TRACK_VECTORS);

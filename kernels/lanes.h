@@ -1,6 +1,6 @@
 /* Vector types and operations that hide the difference between the CPU and the GPU layout.
    `lanes` has one number for each grain of a work-item: LANES = 16 grains on a CPU (a vector), one on a GPU.
-   WHERE(condition, yes, no) selects lane by lane. A grain has SLOTS slots. A CPU's
+   WHERE(condition, yes, no) selects numbers lane by lane, CHOOSE indices. A grain has SLOTS slots. A CPU's
    work-item processes all of them, a GPU's only one: arrays over slots have SLOTS_HERE entries, and entry v
    belongs to slot SLOT(v). The slots of a grain exchange data in EXCHANGE arrays: private memory on a CPU,
    local memory on a GPU. */
@@ -17,6 +17,7 @@ typedef int16 mask;
 typedef int16 slots;
 #define AS_SLOTS(numbers) convert_int16(numbers)
 #define WHERE(condition, yes, no) select((lanes)(no), (lanes)(yes), (condition))
+#define CHOOSE(condition, yes, no) select((slots)(no), (slots)(yes), (condition))
 #define BITS(condition, bits) (convert_int16(condition) & (bits))
 #define NOT(condition) (~(condition))
 #define ANY(m) any_lane(m)
@@ -34,6 +35,7 @@ typedef int slots;
 #define AS_MASK(integers) (integers)
 #define AS_SLOTS(numbers) ((int)(numbers))
 #define WHERE(condition, yes, no) ((condition) ? (lanes)(yes) : (lanes)(no))
+#define CHOOSE(condition, yes, no) ((condition) ? (slots)(yes) : (slots)(no))
 #define BITS(condition, bits) ((condition) ? (bits) : 0)
 #define NOT(condition) (!(condition))
 #define ANY(m) (m)

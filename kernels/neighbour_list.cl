@@ -2,82 +2,129 @@
    grains and walls within `probe_gap` + `skin`: first grains in order of index, then walls. The state stored
    per slot (surface displacements, springs, ..) moves with the neighbour to its new slot. */
 
-/* Inserts `entry` into the sorted row. If the row is full, the entry is dropped, but counted. */
-INLINE int insert_sorted(int* row, int count, int entry) {
-    if (count < SLOTS) {
-        int at = count;
-        for (; at > 0 && row[at - 1] > entry; --at) row[at] = row[at - 1];
-        row[at] = entry;
+/* Rows of a work-item's LANES grains while they are built. */
+typedef struct {
+    slots entry[SLOTS]; /* NO_ENTRY where empty, so that sorting puts empty slots last */
+    slots count;        /* can exceed SLOTS: entries that do not fit are dropped, but counted */
+} Rows;
+#define NO_ENTRY 0x7fffffff
+
+/* Inserts `entry` into the sorted rows of the lanes in `near`. */
+INLINE void insert_sorted(Rows* rows, mask near, int entry) {
+    slots moving = CHOOSE(BITS(near, -1), (slots)(entry), (slots)(NO_ENTRY));
+    for (int c = 0; c < SLOTS; ++c) {
+        const slots lower = min(rows->entry[c], moving);
+        moving = max(rows->entry[c], moving);
+        rows->entry[c] = lower;
     }
-    return count + 1;
+    rows->count += BITS(near, 1);
 }
 
-INLINE int near_grains(global const Replica* restrict replica, int grain,
-                       global const Motion* restrict motion, global const int* restrict cell_head,
-                       global const int* restrict cell_next, int* row) {
-    const real4 own = motion[grain].position;
-    const real reach = replica->probe_gap + replica->skin;
-    const int3 cell = cell_of(replica, own);
-    const bool repeats = replica->container >= CONTAINER_PERIODIC,
-               is_cell = replica->container == CONTAINER_CELL;
-    const CellRange along_x = near_cells(cell.x, replica->span_x, repeats);
-    const CellRange along_y = near_cells(cell.y, replica->span_y, repeats);
-    const CellRange along_z = near_cells(cell.z, replica->span_z, is_cell);
-    const real2 size = (real2)(replica->wall_position[1], replica->wall_position[3]),
-                inverse_size = R(1) / size;
+/* Difference of stored positions, to the nearest image if the container is periodic. */
+INLINE lanes3 nearest_apart(global const Replica* restrict replica, Deformation f, lanes3 apart) {
+    if (replica->container == CONTAINER_CELL)
+        return deformed_lanes(f, nearest_lanes_in_cell(replica, f, apart));
+    if (replica->container == CONTAINER_PERIODIC) {
+        apart.x = nearest_image(apart.x, replica->wall_position[1]);
+        apart.y = nearest_image(apart.y, replica->wall_position[3]);
+    }
+    return apart;
+}
+
+/* Compares all grains in `box` with the lanes in `searching`. */
+INLINE void search_cells(global const Replica* restrict replica, CellBox box, mask searching, slots grain,
+                         lanes4 own, global const Motion* restrict motion,
+                         global const int* restrict cell_head, global const int* restrict cell_next,
+                         Rows* rows) {
     const Deformation f = deformation(replica, R(0));
-    int count = 0;
-    for (int k = along_z.first; k <= along_z.last; ++k)
-        for (int j = along_y.first; j <= along_y.last; ++j)
-            for (int i = along_x.first; i <= along_x.last; ++i) {
+    const lanes reach = own.w + (replica->probe_gap + replica->skin);
+    for (int k = box.z.first; k <= box.z.last; ++k)
+        for (int j = box.y.first; j <= box.y.last; ++j)
+            for (int i = box.x.first; i <= box.x.last; ++i) {
                 const int there = cell_index(replica, wrapped(i, replica->span_x),
                                              wrapped(j, replica->span_y), wrapped(k, replica->span_z));
                 for (int other = cell_head[there]; other >= 0; other = cell_next[other]) {
-                    if (other == grain) continue;
                     const real4 position = motion[other].position;
-                    real3 apart = position.xyz - own.xyz;
-                    if (is_cell)
-                        apart = deformed(f, nearest_in_cell(replica, f, apart));
-                    else if (repeats)
-                        apart.xy -= size * WHOLE_NUMBER(apart.xy * inverse_size);
-                    const real within = own.w + position.w + reach;
-                    if (dot(apart, apart) < within * within) count = insert_sorted(row, count, other);
+                    const lanes3 apart = nearest_apart(
+                        replica, f, (lanes3){position.x - own.x, position.y - own.y, position.z - own.z});
+                    const lanes within = reach + position.w;
+                    const mask near =
+                        AS_MASK(dot3(apart, apart) < within * within) & searching & AS_MASK(grain != other);
+                    if (ANY(near)) insert_sorted(rows, near, other);
                 }
             }
-    return count;
 }
 
-INLINE int near_walls(global const Replica* restrict replica, real4 own, int* row, int count) {
-    if (replica->container == CONTAINER_CELL) return count;
-    const real reach = own.w + replica->probe_gap + replica->skin;
+/* Grains of a work-item that are close to each other search their common cells together. */
+INLINE void near_grains(global const Replica* restrict replica, int first, lanes4 own,
+                        global const Motion* restrict motion, global const int* restrict cell_head,
+                        global const int* restrict cell_next, Rows* rows) {
+    const mask is_grain = AS_MASK(own.w > R(0));
+    int begin = 0;
+    while (begin < LANES) {
+        CellBox box = cells_around(replica, motion[first + begin].position);
+        int end = begin + 1;
+        for (; end < LANES; ++end) {
+            const real4 next = motion[first + end].position;
+            if (!(next.w > R(0))) continue;
+            const CellBox both = joined(box, cells_around(replica, next));
+            if (!searchable(replica, both)) break;
+            box = both;
+        }
+        const mask searching = is_grain & AS_MASK(LANE_NUMBERS >= begin) & AS_MASK(LANE_NUMBERS < end);
+        search_cells(replica, box, searching, first + LANE_NUMBERS, own, motion, cell_head, cell_next, rows);
+        begin = end;
+    }
+}
+
+INLINE void near_walls(global const Replica* restrict replica, lanes4 own, Rows* rows) {
+    if (replica->container == CONTAINER_CELL) return;
+    const lanes3 centre = {own.x, own.y, own.z};
+    const lanes reach = own.w + (replica->probe_gap + replica->skin);
+    const mask is_grain = AS_MASK(own.w > R(0));
     for (int w = 0; w < 6; ++w) {
-        const real wall = replica->wall_position[w];
-        const bool leaning = w == 5 && (replica->effects & EFFECT_PLATE_TILT);
-        const real distance = leaning  ? plate_distance(replica, wall, own)
-                              : w < 4  ? side_distance(replica, w, own)
-                              : w == 5 ? wall - own.z
-                                       : own.z - wall;
-        if (distance >= reach) continue;
-        if (count < SLOTS) row[count] = WALL_PARTNER(w);
-        ++count;
+        const lanes distance = w < 4    ? side_distance(replica, w, centre)
+                               : w == 5 ? plate_distance(replica, replica->wall_position[5], centre)
+                                        : own.z - replica->wall_position[4];
+        const mask near = AS_MASK(distance < reach) & is_grain;
+        if (!ANY(near)) continue;
+        const slots at_end = CHOOSE(BITS(near, -1), rows->count, (slots)(SLOTS));
+        for (int c = 0; c < SLOTS; ++c)
+            rows->entry[c] = CHOOSE(at_end == c, (slots)(WALL_PARTNER(w)), rows->entry[c]);
+        rows->count += BITS(near, 1);
+    }
+}
+
+/* Reorders the stored values of a work-item's grains, which begin at `row`: each value follows its neighbour
+   from slot `from` to its new slot; new neighbours (from < 0) start from zero. */
+INLINE void carry(const slots* from, int count, global real* restrict values, size_t row) {
+    lanes kept[SLOTS];
+    for (int c = 0; c < count; ++c) kept[c] = gather(values + row, max(from[c], 0) * LANES + LANE_NUMBERS);
+    for (int c = 0; c < count; ++c)
+        STORE_LANES(WHERE(AS_MASK(from[c] >= 0), kept[c], R(0)), values + SLOT_PLACE(row, c));
+}
+
+/* Stores the rows, and the slot in which each neighbour was before. Returns the number of slots in which a
+   row has or had a neighbour, or 0 if no row has changed. */
+INLINE int store_rows(const Rows* rows, global int* restrict partner, size_t row, slots* from) {
+    slots before[SLOTS], changed = 0;
+    int count = 0;
+    for (int c = 0; c < SLOTS; ++c) {
+        before[c] = LOAD_LANES(partner + SLOT_PLACE(row, c));
+        const slots after = CHOOSE(rows->entry[c] == NO_ENTRY, (slots)(NO_PARTNER), rows->entry[c]);
+        changed |= before[c] ^ after;
+        if (ANY(AS_MASK((before[c] & after) != NO_PARTNER))) count = c + 1;
+        STORE_LANES(after, partner + SLOT_PLACE(row, c));
+    }
+    if (!ANY(AS_MASK(changed != 0))) return 0;
+    for (int c = 0; c < count; ++c) {
+        from[c] = -1;
+        for (int k = 0; k < count; ++k) from[c] = CHOOSE(before[k] == rows->entry[c], (slots)(k), from[c]);
     }
     return count;
 }
 
-/* Reorders the stored values of a grain, which begin at `row`: each value follows its neighbour to the new
-   slot; new neighbours start from zero. */
-INLINE void carry(const int* before, const int* after, global real* restrict values, size_t row) {
-    real kept[SLOTS];
-    for (int c = 0; c < SLOTS; ++c) kept[c] = values[SLOT_PLACE(row, c)];
-    for (int c = 0; c < SLOTS; ++c) {
-        real value = R(0);
-        for (int k = 0; k < SLOTS; ++k)
-            if (after[c] != NO_PARTNER && before[k] == after[c]) value = kept[k];
-        values[SLOT_PLACE(row, c)] = value;
-    }
-}
-
-WORK_GROUP(LIST_ITEMS)
+WORK_GROUP(SEARCH_ITEMS)
 kernel void list_neighbours(const int block_count, const int slot_count,
                             global const Replica* restrict replicas, global const int* restrict blocks,
                             global const int* restrict replica_of_block, global const Motion* restrict motion,
@@ -85,34 +132,32 @@ kernel void list_neighbours(const int block_count, const int slot_count,
                             global int* restrict partner, global real* restrict displacement,
                             global real* restrict history, global real* restrict memory,
                             global Track* restrict track, global int* restrict status) {
-    const int grain = listed_grain(blocks, block_count);
-    if (grain < 0) return;
-    global const Replica* restrict replica = replicas + replica_of_block[grain / BLOCK];
-    const size_t row = FIRST_SLOT(grain);
-    const real4 own = motion[grain].position;
-    track[grain].listed_position = own;
-    if (!(own.w > R(0))) return;
+    const int first = listed_grain(blocks, block_count, LANES);
+    if (first < 0) return;
+    global const Replica* restrict replica = replicas + replica_of_block[first / BLOCK];
+    const size_t row = FIRST_SLOT(first);
+    const slots grain = first + LANE_NUMBERS;
+    const lanes4 own = gather4((global const real4*)motion, grain * MOTION_VECTORS);
+    scatter4(own, (global real4*)track, grain * TRACK_VECTORS);
+    if (!ANY(AS_MASK(own.w > R(0)))) return;
 
-    int before[SLOTS], after[SLOTS];
-    for (int c = 0; c < SLOTS; ++c) {
-        before[c] = partner[SLOT_PLACE(row, c)];
-        after[c] = NO_PARTNER;
-    }
-    int count = near_grains(replica, grain, motion, cell_head, cell_next, after);
-    count = near_walls(replica, own, after, count);
-    if (count > SLOTS) status[grain] |= STATUS_SLOTS;
+    Rows rows;
+    rows.count = 0;
+    for (int c = 0; c < SLOTS; ++c) rows.entry[c] = NO_ENTRY;
+    near_grains(replica, first, own, motion, cell_head, cell_next, &rows);
+    near_walls(replica, own, &rows);
+    const mask full = AS_MASK(rows.count > SLOTS);
+    if (ANY(full)) report_status(first, BITS(full, STATUS_SLOTS), status);
 
-    bool same = true;
-    for (int c = 0; c < SLOTS; ++c) same = same && before[c] == after[c];
-    if (same) return;
-    for (int c = 0; c < SLOTS; ++c) partner[SLOT_PLACE(row, c)] = after[c];
+    slots from[SLOTS];
+    const int count = store_rows(&rows, partner, row, from);
+    if (count == 0) return;
     if (replica->surface != SURFACE_RIGID) {
-        carry(before, after, displacement, row);
-        for (int turn = 0; turn < 4; ++turn) carry(before, after, history + (size_t)turn * slot_count, row);
+        carry(from, count, displacement, row);
+        for (int turn = 0; turn < 4; ++turn) carry(from, count, history + (size_t)turn * slot_count, row);
     }
-    const size_t block = row - grain % LANES;
     for (int kind = 0; kind < replica->memory_rows; ++kind)
-        carry(before, after, memory + block * replica->memory_rows, SLOT_PLACE(grain % LANES, kind * SLOTS));
+        carry(from, count, memory + row * replica->memory_rows, (size_t)kind * SLOTS * LANES);
 }
 
 /* partner_slot: the slot of the same contact in the neighbour's row. For walls and empty slots it is
@@ -120,7 +165,7 @@ kernel void list_neighbours(const int block_count, const int slot_count,
 WORK_GROUP(LIST_ITEMS)
 kernel void link_partner_slots(const int block_count, const int slot_count, global const int* restrict blocks,
                                global const int* restrict partner, global int* restrict partner_slot) {
-    const int grain = listed_grain(blocks, block_count);
+    const int grain = listed_grain(blocks, block_count, 1);
     if (grain < 0) return;
     const size_t row = FIRST_SLOT(grain);
     for (int c = 0; c < SLOTS; ++c) {

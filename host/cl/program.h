@@ -20,8 +20,10 @@ struct KernelBuild {
     int block() const { return lanes > 1 ? 16 : std::clamp(group / slots, 1, 16); }
     /// Size of a work-group of a step.
     int work_items() const { return lanes > 1 ? block() / lanes : block() * slots; }
-    /// Size of a work-group of the kernels that list neighbours, with one work-item per grain.
+    /// Size of a work-group of the kernels that build lists with one work-item per grain.
     int list_items() const { return std::min(group, lanes > 1 ? block() : 64); }
+    /// Size of a work-group of `list_neighbours`, with one work-item per `lanes` grains.
+    int search_items() const { return lanes > 1 ? 1 : list_items(); }
     /// Grain of a place in fields with one number per slot (SLOT_PLACE in kernels/lanes.h).
     std::size_t grain_of_slot(std::size_t place) const {
         const auto wide = static_cast<std::size_t>(lanes), all = static_cast<std::size_t>(slots);

@@ -209,19 +209,22 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     const Part stale = part(wanted);
     if (stale.replicas.empty()) return;
     const int blocks = static_cast<int>(stale.blocks.size());
-    const int items = build_.list_items();
-    const std::size_t groups = (stale.blocks.size() * build_.block() + items - 1) / items;
+    const auto groups = [&](int items, int grains) {  // work-groups whose work-items have so many grains
+        return (stale.blocks.size() * build_.block() + items * grains - 1) / (items * grains);
+    };
+    const std::size_t by_grain = groups(build_.list_items(), 1);
     auto& f = fields_;
     f.rebuilt.write(stale.portions.data(), 0, stale.portions.size() * sizeof(Portion));
     f.rebuilt_blocks.write(stale.blocks.data(), 0, blocks * sizeof(int));
     kernels_.empty_cells(stale.portions.size(), f.replicas, f.rebuilt, f.cell_head);
-    kernels_.fill_cells(groups, blocks, f.replicas, f.rebuilt_blocks, f.replica_of_block, f.motion.now(0),
+    kernels_.fill_cells(by_grain, blocks, f.replicas, f.rebuilt_blocks, f.replica_of_block, f.motion.now(0),
                         f.cell_head, f.cell_next);
-    kernels_.list_neighbours(groups, blocks, f.slot_count, f.replicas, f.rebuilt_blocks, f.replica_of_block,
-                             f.motion.now(0), f.cell_head, f.cell_next, f.partner, f.displacement.now(0),
-                             f.displacement_history, f.memory_of_contacts, f.tracks, f.status);
+    kernels_.list_neighbours(groups(build_.search_items(), build_.lanes), blocks, f.slot_count, f.replicas,
+                             f.rebuilt_blocks, f.replica_of_block, f.motion.now(0), f.cell_head, f.cell_next,
+                             f.partner, f.displacement.now(0), f.displacement_history, f.memory_of_contacts,
+                             f.tracks, f.status);
     if (f.has_displacements())
-        kernels_.link_partner_slots(groups, blocks, f.slot_count, f.rebuilt_blocks, f.partner,
+        kernels_.link_partner_slots(by_grain, blocks, f.slot_count, f.rebuilt_blocks, f.partner,
                                     f.partner_slot);
     for (int r : stale.replicas) {
         rebuild_[r] = 0;

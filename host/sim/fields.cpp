@@ -87,7 +87,7 @@ Kernels::Kernels(Device& device, const KernelBuild& build)
 Kernels::Kernels(Device& device, const KernelBuild& build, const cl::Program& program)
     : empty_cells(device, program, "empty_cells", build.list_items()),
       fill_cells(device, program, "fill_cells", build.list_items()),
-      list_neighbours(device, program, "list_neighbours", build.list_items()),
+      list_neighbours(device, program, "list_neighbours", build.search_items()),
       link_partner_slots(device, program, "link_partner_slots", build.list_items()),
       advance(device, program, "advance", build.work_items()),
       measure(device, program, "measure", build.work_items()),

@@ -91,9 +91,12 @@ TEST(Container, SidesOfABoxAreItsWalls) {
     replica.wall_position[1] = 2;
     replica.wall_position[3] = 1;
     const std::string text = R"(
-        const real4 point = (real4)(in[0], in[1], R(0), R(0));
-        for (int wall = 0; wall < 4; ++wall) out[wall] = side_distance(replica, wall, point);
-        const mask within = within_sides(replica, (lanes3){in[0], in[1], R(0)});
+        const lanes3 point = {in[0], in[1], R(0)};
+        for (int wall = 0; wall < 4; ++wall) {
+            const lanes distance = side_distance(replica, wall, point);
+            out[wall] = LANE(real, distance, wall);
+        }
+        const mask within = within_sides(replica, point);
         const lanes inside = WHERE(within, R(1), R(0));
         out[4] = LANE(real, inside, 6);)";
     EXPECT_EQ(mapped_rows(text, replica, {0.5F, 0.25F, 2.5F, 0.75F}, 2, 5),
@@ -105,12 +108,12 @@ TEST(Container, SideOfACylinderIsOneCurvedWall) {
     replica.container = CONTAINER_CYLINDER;
     replica.wall_position[1] = replica.wall_position[3] = 2;
     const std::string text = R"(
-        const real4 point = (real4)(in[0], in[1], R(0.5), R(0));
         const lanes3 points = {in[0], in[1], R(0.5)}, foot = side_foot(replica, points);
         const mask within = within_sides(replica, points);
         const lanes inside = WHERE(within, R(1), R(0)), curved = curved_radius(replica, R(0.75));
         out[0] = LANE(real, foot.x, 0), out[1] = LANE(real, foot.y, 1), out[2] = LANE(real, foot.z, 2);
-        out[3] = side_distance(replica, 0, point), out[4] = isinf(side_distance(replica, 1, point));
+        const lanes curved_wall = side_distance(replica, 0, points), none = side_distance(replica, 1, points);
+        out[3] = LANE(real, curved_wall, 3), out[4] = isinf(LANE(real, none, 4));
         out[5] = LANE(real, inside, 3), out[6] = LANE(real, curved, 4);)";
     const auto found = mapped_rows(text, replica, {1.3F, 1.4F, 1, 1, 2, 2}, 2, 7);
     const float expected[] = {1.6F,

@@ -168,6 +168,28 @@ TEST(NeighbourList, HoldsEveryPairInABoxMuchLargerThanItsGrains) {
                                                           two_lattices_in_a_large_box(900, {0.07, 0, 0})});
 }
 
+/// Eight pairs of grains along one axis, in a box that has far more cells than the cell list.
+Start pairs_on_a_line(int axis) {
+    Start start = two_lattices_in_a_large_box(6, Vec3::Zero());
+    start.packing = {};
+    for (int i = 0; i < 16; ++i) {
+        Vec3 x(1, 1, 1);
+        x[axis] += 0.04 * (i / 2) + 0.019 * (i % 2);
+        start.packing.position.push_back(x);
+        start.packing.diameter.push_back(0.02);
+    }
+    return start;
+}
+
+// The 16 grains of a vector search common cells, but not if the cell list repeats between them.
+TEST(NeighbourList, HoldsEveryPairIfTheGrainsOfAVectorAreFarApart) {
+    const Start probe = pairs_on_a_line(0);
+    const auto cells = mcdem::device_replica<mcdem::f32::Replica>(probe.replica, probe.packing, {});
+    ASSERT_LT(std::max({cells.cells_x, cells.cells_y, cells.cells_z}) * cells.cell_size[0], 0.21);
+    expect_lists(build(Precision::single_precision),
+                 {pairs_on_a_line(0), pairs_on_a_line(1), pairs_on_a_line(2)});
+}
+
 Start in_cylinder(Start start) {
     const double radius = 0.1;
     start.replica.box = {2 * radius, 2 * radius, mcdem::ContainerShape::cylinder};

@@ -17,10 +17,10 @@ TEST(Plate, FootAndDistanceAgreeWithPlaneGeometry) {
     for (int i = 0; i < 50; ++i)
         for (const double high : {0.2, 0.1, 0.14}) points.push_back(static_cast<float>(uniform(0, high)));
     const auto found = mapped_rows(R"(
-        const real4 point = (real4)(in[0], in[1], in[2], R(0.01));
-        const lanes3 foot = plate_foot(replica, R(0.15), (lanes3){in[0], in[1], in[2]});
+        const lanes3 point = {in[0], in[1], in[2]}, foot = plate_foot(replica, R(0.15), point);
+        const lanes distance = plate_distance(replica, R(0.15), point);
         out[0] = LANE(real, foot.x, 0), out[1] = LANE(real, foot.y, 1), out[2] = LANE(real, foot.z, 2);
-        out[3] = plate_distance(replica, R(0.15), point);)",
+        out[3] = LANE(real, distance, 3);)",
                                    replica, points, 3, 4);
     const Vec3 up = Vec3(-0.03, 0.05, 1).normalized(), middle(0.1, 0.05, plate_z);
     for (std::size_t i = 0; i < 50; ++i) {
@@ -40,7 +40,8 @@ TEST(Plate, MovesAtItsVelocityAndIsLevelWithoutTheEffect) {
     replica.plate_tilt_x = 1;
     const auto found = mapped_rows(R"(
         out[0] = plate_position(replica, 8);
-        out[1] = plate_height(replica, out[0], (real4)(in[0]));)",
+        const lanes height = plate_heights(replica, out[0], (lanes3){in[0], in[0], in[0]});
+        out[1] = LANE(real, height, 0);)",
                                    replica, {3}, 1, 2);
     EXPECT_EQ(found, (std::vector<float>{0.25F, 0.25F}));
 }
