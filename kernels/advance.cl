@@ -27,25 +27,30 @@ INLINE Displacements displacements_of(int step, size_t slot_count, global const 
 }
 
 #if LANES == 16
-/* Requests what the next 16 grains will read. If the state of a batch, about 1 kB per grain, exceeds the
-   caches of the processor, they would wait for memory; in smaller batches these instructions would only
-   take time. PoCL's `prefetch` has no code. */
-#define CACHED_SLOTS (1 << 19)
+/* Requests the displacements and the neighbours of the next 16 grains. If the state of a launch, about 1 kB
+   per grain, exceeds the caches of the processor, they would otherwise arrive late; in smaller launches these
+   instructions would only take time. PoCL's `prefetch` has no code. */
+#define CACHED_GRAINS 32768
 #ifdef __x86_64__
 #define PREFETCH(address) __asm__ volatile("prefetcht0 (%0)" : : "r"(address))
 #else
 #define PREFETCH(address) prefetch((global const char*)(address), 1)
 #endif
-INLINE void prefetch_next(Grain at, Batch batch, Displacements surfaces, size_t slot_count) {
+INLINE void prefetch_slot(global const real* values) {
+    PREFETCH(values);
+    if (sizeof(lanes) > 64) PREFETCH(values + LANES / 2); /* the second cache line */
+}
+INLINE void prefetch_next(Grain at, Batch batch, Displacements surfaces) {
+    if (get_global_size(0) * LANES <= CACHED_GRAINS) return;
+    if (get_global_id(0) + 1 == get_global_offset(0) + get_global_size(0)) return; /* the last grains */
     const size_t next = at.row + LANES * SLOTS;
-    if (slot_count <= CACHED_SLOTS || next >= slot_count) return;
     const bool moves = at.replica->surface != SURFACE_RIGID;
+    /* The number of slots is that of this work-item, which is about the same. */
     for (int c = 0; c < (moves ? at.count : 0); ++c) {
-        const size_t slot = SLOT_PLACE(next, c);
-        PREFETCH(batch.displacement + slot);
-        PREFETCH(surfaces.two_before + slot);
-        PREFETCH(surfaces.four_before + slot);
-        PREFETCH(surfaces.next + slot);
+        prefetch_slot(batch.displacement + SLOT_PLACE(next, c));
+        prefetch_slot(surfaces.two_before + SLOT_PLACE(next, c));
+        prefetch_slot(surfaces.four_before + SLOT_PLACE(next, c));
+        prefetch_slot(surfaces.next + SLOT_PLACE(next, c));
     }
     for (int c = 0; c < at.count * LANES; ++c) {
         /* A Motion is in one cache line or in two. */
@@ -56,7 +61,7 @@ INLINE void prefetch_next(Grain at, Batch batch, Displacements surfaces, size_t 
     }
 }
 #else
-#define prefetch_next(at, batch, surfaces, slot_count)
+#define prefetch_next(at, batch, surfaces)
 #endif
 
 /* Contact forces of a grain and their sums; writes the contacts to `table` for the surface displacements.
@@ -175,8 +180,7 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
 
     slots partners[SLOTS_HERE];
     at.count = load_partners(partner, at.row, partners);
-    prefetch_next(at, batch, displacements_of(step, slot_count, replica, displacement_next, history),
-                  slot_count);
+    prefetch_next(at, batch, displacements_of(step, slot_count, replica, displacement_next, history));
     /* Inlined twice; the copy with the constant 0 contains no code for effects. */
     const GrainSums sums = RARELY(replica->effects)
                                ? contact_sums(at, replica->effects, batch, partners, table)

@@ -22,65 +22,12 @@ INLINE int3 cell_of(global const Replica* restrict replica, real4 point) {
                   cell_along(point.z, replica->cell_size[2], replica->span_z));
 }
 
-/* Range of cells along one axis that contains a cell and its neighbours, without duplicates. In periodic
-   directions it may extend beyond the span; wrapped() maps such cells back. */
-typedef struct {
-    int first, last;
-} CellRange;
-
-INLINE CellRange near_cells(int cell, int span, bool repeats) {
-    if (!repeats) return (CellRange){max(cell - 1, 0), min(cell + 1, span - 1)};
-    return span < 3 ? (CellRange){0, span - 1} : (CellRange){cell - 1, cell + 1};
-}
-
-INLINE int wrapped(int cell, int span) { return cell < 0 ? cell + span : cell < span ? cell : cell - span; }
-
-/* The cells of a box, by axis. */
-typedef struct {
-    CellRange x, y, z;
-} CellBox;
-
-/* The cell of a point and its neighbours. */
-INLINE CellBox cells_around(global const Replica* restrict replica, real4 point) {
-    const int3 cell = cell_of(replica, point);
-    const bool repeats = replica->container >= CONTAINER_PERIODIC;
-    return (CellBox){near_cells(cell.x, replica->span_x, repeats),
-                     near_cells(cell.y, replica->span_y, repeats),
-                     near_cells(cell.z, replica->span_z, replica->container == CONTAINER_CELL)};
-}
-
-INLINE CellRange joined_range(CellRange a, CellRange b) {
-    return (CellRange){min(a.first, b.first), max(a.last, b.last)};
-}
-/* The smallest box that contains both. */
-INLINE CellBox joined(CellBox a, CellBox b) {
-    return (CellBox){joined_range(a.x, b.x), joined_range(a.y, b.y), joined_range(a.z, b.z)};
-}
-
-INLINE int width(CellRange range) { return range.last - range.first + 1; }
-/* Whether the lists of a box's cells are distinct (they can repeat, see above) and not so many that its
-   grains are compared faster one by one. */
-#define MAX_CELLS 150
-INLINE bool searchable(global const Replica* restrict replica, CellBox box) {
-    return width(box.x) <= min(replica->cells_x, replica->span_x) &&
-           width(box.y) <= min(replica->cells_y, replica->span_y) &&
-           width(box.z) <= min(replica->cells_z, replica->span_z) &&
-           width(box.x) * width(box.y) * width(box.z) <= MAX_CELLS;
-}
-
 /* The first of the `grains` grains of a work-item in kernels that build the lists, or -1 beyond the last
-   block. The work-group size need not be BLOCK. */
+   block. `grains` divides BLOCK; the work-group size need not be BLOCK. */
 INLINE int listed_grain(global const int* restrict blocks, int block_count, int grains) {
     const int place = get_global_id(0) * grains;
     return place < block_count * BLOCK ? blocks[place / BLOCK] * BLOCK + place % BLOCK : -1;
 }
-/* Work-group size of `list_neighbours`, whose work-items have LANES grains. */
-#if LANES == 16
-#define SEARCH_ITEMS 1
-#else
-#define SEARCH_ITEMS LIST_ITEMS
-#endif
-
 WORK_GROUP(LIST_ITEMS)
 kernel void empty_cells(global const Replica* restrict replicas, global const Portion* restrict portions,
                         global int* restrict cell_head) {

@@ -1,18 +1,19 @@
 /* Assignment of grains to work-items, and sums over the slots of a grain, for the CPU and the GPU layout.
    Kernels that process contacts begin with GRAINS_OF_WORK_ITEM, which declares `block`, `first` (the first
-   grain of the work-item), `table` (its contact table) and `scratch` (for sums over slots). */
+   grain of the work-item), `table` (its contact table) and `scratch` (for sums over slots). A launch on a CPU
+   may begin with any of the blocks; on a GPU it begins with the first one. */
 #define SLOT_SUMS 7            /* sums per step: force, torque, slots with a status */
 #define SHARED_ROW (SLOTS + 1) /* odd, so that rows start in different banks of local memory */
 #if LANES == 16
 #define IS_LEADER true
 #define STEP_ITEMS (BLOCK / LANES) /* work-group size */
-#define GRAINS_OF_WORK_ITEM                                         \
-    const int block = blocks[get_group_id(0)];                      \
-    const int first = block * BLOCK + (int)get_local_id(0) * LANES; \
-private                                                             \
-    ContactTable own_table;                                         \
-private                                                             \
-    real scratch[1];                                                \
+#define GRAINS_OF_WORK_ITEM                                                        \
+    const int block = blocks[get_group_id(0) + get_global_offset(0) / STEP_ITEMS]; \
+    const int first = block * BLOCK + (int)get_local_id(0) * LANES;                \
+private                                                                            \
+    ContactTable own_table;                                                        \
+private                                                                            \
+    real scratch[1];                                                               \
     EXCHANGE ContactTable* table = &own_table;
 #else
 #define STEP_ITEMS (BLOCK * SLOTS)

@@ -1,9 +1,9 @@
 /* Vector types and operations that hide the difference between the CPU and the GPU layout.
    `lanes` has one number for each grain of a work-item: LANES = 16 grains on a CPU (a vector), one on a GPU.
    WHERE(condition, yes, no) selects numbers lane by lane, CHOOSE indices. A grain has SLOTS slots. A CPU's
-   work-item processes all of them, a GPU's only one: arrays over slots have SLOTS_HERE entries, and entry v
-   belongs to slot SLOT(v). The slots of a grain exchange data in EXCHANGE arrays: private memory on a CPU,
-   local memory on a GPU. */
+   work-item processes all of them, a GPU's only one in the kernels of a step: arrays over slots have
+   SLOTS_HERE entries, and entry v belongs to slot SLOT(v). The slots of a grain exchange data in EXCHANGE
+   arrays: private memory on a CPU, local memory on a GPU. */
 #if LANES == 16
 #if MCDEM_DOUBLE
 typedef double16 lanes;

@@ -2,6 +2,54 @@
    grains and walls within `probe_gap` + `skin`: first grains in order of index, then walls. The state stored
    per slot (surface displacements, springs, ..) moves with the neighbour to its new slot. */
 
+#define SEARCH_ITEMS (LANES == 16 ? 1 : LIST_ITEMS) /* work-items with LANES grains in a work-group */
+
+/* Range of cells along one axis that contains a cell and its neighbours, without duplicates. In periodic
+   directions it may extend beyond the span; wrapped() maps such cells back. */
+typedef struct {
+    int first, last;
+} CellRange;
+
+INLINE CellRange near_cells(int cell, int span, bool repeats) {
+    if (!repeats) return (CellRange){max(cell - 1, 0), min(cell + 1, span - 1)};
+    return span < 3 ? (CellRange){0, span - 1} : (CellRange){cell - 1, cell + 1};
+}
+
+INLINE int wrapped(int cell, int span) { return cell < 0 ? cell + span : cell < span ? cell : cell - span; }
+
+/* The cells of a box, by axis. */
+typedef struct {
+    CellRange x, y, z;
+} CellBox;
+
+/* The cell of a point and its neighbours. */
+INLINE CellBox cells_around(global const Replica* restrict replica, real4 point) {
+    const int3 cell = cell_of(replica, point);
+    const bool repeats = replica->container >= CONTAINER_PERIODIC;
+    return (CellBox){near_cells(cell.x, replica->span_x, repeats),
+                     near_cells(cell.y, replica->span_y, repeats),
+                     near_cells(cell.z, replica->span_z, replica->container == CONTAINER_CELL)};
+}
+
+INLINE CellRange joined_range(CellRange a, CellRange b) {
+    return (CellRange){min(a.first, b.first), max(a.last, b.last)};
+}
+/* The smallest box that contains both. */
+INLINE CellBox joined(CellBox a, CellBox b) {
+    return (CellBox){joined_range(a.x, b.x), joined_range(a.y, b.y), joined_range(a.z, b.z)};
+}
+
+INLINE int width(CellRange range) { return range.last - range.first + 1; }
+/* Whether the box's cells have distinct lists (cell_list.cl) and are so few that one search is faster than
+   one per grain. */
+#define MAX_SEARCHED_CELLS 150
+INLINE bool searchable(global const Replica* restrict replica, CellBox box) {
+    return width(box.x) <= min(replica->cells_x, replica->span_x) &&
+           width(box.y) <= min(replica->cells_y, replica->span_y) &&
+           width(box.z) <= min(replica->cells_z, replica->span_z) &&
+           width(box.x) * width(box.y) * width(box.z) <= MAX_SEARCHED_CELLS;
+}
+
 /* Rows of a work-item's LANES grains while they are built. */
 typedef struct {
     slots entry[SLOTS]; /* NO_ENTRY where empty, so that sorting puts empty slots last */
@@ -20,7 +68,7 @@ INLINE void insert_sorted(Rows* rows, mask near, int entry) {
     rows->count += BITS(near, 1);
 }
 
-/* Difference of stored positions, to the nearest image if the container is periodic. */
+/* Vector between grains, from the difference of their stored positions: to the nearest image, deformed. */
 INLINE lanes3 nearest_apart(global const Replica* restrict replica, Deformation f, lanes3 apart) {
     if (replica->container == CONTAINER_CELL)
         return deformed_lanes(f, nearest_lanes_in_cell(replica, f, apart));
@@ -37,7 +85,7 @@ INLINE void search_cells(global const Replica* restrict replica, CellBox box, ma
                          global const int* restrict cell_head, global const int* restrict cell_next,
                          Rows* rows) {
     const Deformation f = deformation(replica, R(0));
-    const lanes reach = own.w + (replica->probe_gap + replica->skin);
+    const real margin = replica->probe_gap + replica->skin;
     for (int k = box.z.first; k <= box.z.last; ++k)
         for (int j = box.y.first; j <= box.y.last; ++j)
             for (int i = box.x.first; i <= box.x.last; ++i) {
@@ -47,7 +95,7 @@ INLINE void search_cells(global const Replica* restrict replica, CellBox box, ma
                     const real4 position = motion[other].position;
                     const lanes3 apart = nearest_apart(
                         replica, f, (lanes3){position.x - own.x, position.y - own.y, position.z - own.z});
-                    const lanes within = reach + position.w;
+                    const lanes within = (own.w + position.w) + margin; /* the same bits from both sides */
                     const mask near =
                         AS_MASK(dot3(apart, apart) < within * within) & searching & AS_MASK(grain != other);
                     if (ANY(near)) insert_sorted(rows, near, other);
@@ -55,11 +103,11 @@ INLINE void search_cells(global const Replica* restrict replica, CellBox box, ma
             }
 }
 
-/* Grains of a work-item that are close to each other search their common cells together. */
-INLINE void near_grains(global const Replica* restrict replica, int first, lanes4 own,
+/* Grains of a work-item that are close to each other search the box around all their cells together, if it is
+   searchable(). */
+INLINE void near_grains(global const Replica* restrict replica, slots grain, mask is_grain, lanes4 own,
                         global const Motion* restrict motion, global const int* restrict cell_head,
-                        global const int* restrict cell_next, Rows* rows) {
-    const mask is_grain = AS_MASK(own.w > R(0));
+                        global const int* restrict cell_next, int first, Rows* rows) {
     int begin = 0;
     while (begin < LANES) {
         CellBox box = cells_around(replica, motion[first + begin].position);
@@ -72,16 +120,15 @@ INLINE void near_grains(global const Replica* restrict replica, int first, lanes
             box = both;
         }
         const mask searching = is_grain & AS_MASK(LANE_NUMBERS >= begin) & AS_MASK(LANE_NUMBERS < end);
-        search_cells(replica, box, searching, first + LANE_NUMBERS, own, motion, cell_head, cell_next, rows);
+        search_cells(replica, box, searching, grain, own, motion, cell_head, cell_next, rows);
         begin = end;
     }
 }
 
-INLINE void near_walls(global const Replica* restrict replica, lanes4 own, Rows* rows) {
+INLINE void near_walls(global const Replica* restrict replica, mask is_grain, lanes4 own, Rows* rows) {
     if (replica->container == CONTAINER_CELL) return;
     const lanes3 centre = {own.x, own.y, own.z};
     const lanes reach = own.w + (replica->probe_gap + replica->skin);
-    const mask is_grain = AS_MASK(own.w > R(0));
     for (int w = 0; w < 6; ++w) {
         const lanes distance = w < 4    ? side_distance(replica, w, centre)
                                : w == 5 ? plate_distance(replica, replica->wall_position[5], centre)
@@ -104,10 +151,10 @@ INLINE void carry(const slots* from, int count, global real* restrict values, si
         STORE_LANES(WHERE(AS_MASK(from[c] >= 0), kept[c], R(0)), values + SLOT_PLACE(row, c));
 }
 
-/* Stores the rows, and the slot in which each neighbour was before. Returns the number of slots in which a
-   row has or had a neighbour, or 0 if no row has changed. */
-INLINE int store_rows(const Rows* rows, global int* restrict partner, size_t row, slots* from) {
-    slots before[SLOTS], changed = 0;
+/* Replaces the stored rows, which are returned in `before`. Returns the number of slots in which a row has or
+   had a neighbour, or 0 if no row has changed. */
+INLINE int store_rows(const Rows* rows, global int* restrict partner, size_t row, slots* before) {
+    slots changed = 0;
     int count = 0;
     for (int c = 0; c < SLOTS; ++c) {
         before[c] = LOAD_LANES(partner + SLOT_PLACE(row, c));
@@ -116,12 +163,15 @@ INLINE int store_rows(const Rows* rows, global int* restrict partner, size_t row
         if (ANY(AS_MASK((before[c] & after) != NO_PARTNER))) count = c + 1;
         STORE_LANES(after, partner + SLOT_PLACE(row, c));
     }
-    if (!ANY(AS_MASK(changed != 0))) return 0;
+    return ANY(AS_MASK(changed != 0)) ? count : 0;
+}
+
+/* The slot in which each neighbour was before; -1 for a new one. */
+INLINE void find_previous(const Rows* rows, const slots* before, int count, slots* from) {
     for (int c = 0; c < count; ++c) {
         from[c] = -1;
         for (int k = 0; k < count; ++k) from[c] = CHOOSE(before[k] == rows->entry[c], (slots)(k), from[c]);
     }
-    return count;
 }
 
 WORK_GROUP(SEARCH_ITEMS)
@@ -139,20 +189,23 @@ kernel void list_neighbours(const int block_count, const int slot_count,
     const slots grain = first + LANE_NUMBERS;
     const lanes4 own = gather4((global const real4*)motion, grain * MOTION_VECTORS);
     scatter4(own, (global real4*)track, grain * TRACK_VECTORS);
-    if (!ANY(AS_MASK(own.w > R(0)))) return;
+    const mask is_grain = AS_MASK(own.w > R(0));
+    if (!ANY(is_grain)) return;
 
     Rows rows;
     rows.count = 0;
     for (int c = 0; c < SLOTS; ++c) rows.entry[c] = NO_ENTRY;
-    near_grains(replica, first, own, motion, cell_head, cell_next, &rows);
-    near_walls(replica, own, &rows);
+    near_grains(replica, grain, is_grain, own, motion, cell_head, cell_next, first, &rows);
+    near_walls(replica, is_grain, own, &rows);
     const mask full = AS_MASK(rows.count > SLOTS);
     if (ANY(full)) report_status(first, BITS(full, STATUS_SLOTS), status);
 
-    slots from[SLOTS];
-    const int count = store_rows(&rows, partner, row, from);
-    if (count == 0) return;
-    if (replica->surface != SURFACE_RIGID) {
+    slots before[SLOTS], from[SLOTS];
+    const int count = store_rows(&rows, partner, row, before);
+    const bool moves = replica->surface != SURFACE_RIGID;
+    if (count == 0 || (!moves && replica->memory_rows == 0)) return;
+    find_previous(&rows, before, count, from);
+    if (moves) {
         carry(from, count, displacement, row);
         for (int turn = 0; turn < 4; ++turn) carry(from, count, history + (size_t)turn * slot_count, row);
     }

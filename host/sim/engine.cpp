@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/container.h"
 #include "core/errors.h"
@@ -60,6 +61,13 @@ std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> any_device_re
     return device_replicas<f32::Replica>(replicas, packings, layout);
 }
 
+/// Number of grains whose steps are made before those of other replicas. On a CPU their state, about 1 kB per
+/// grain, should fit into the caches; a GPU needs all grains at once.
+std::size_t grains_at_once(const DeviceInfo& device, const KernelBuild& build) {
+    if (build.lanes == 1) return std::numeric_limits<std::size_t>::max();
+    return std::max<std::size_t>(8192, 2048 * device.compute_units);
+}
+
 KernelBuild with_species(KernelBuild build, const std::vector<Replica>& replicas) {
     build.species = materials_kept(replicas);
     return build;
@@ -70,6 +78,7 @@ KernelBuild with_species(KernelBuild build, const std::vector<Replica>& replicas
 Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> replicas,
                std::vector<Packing> packings)
     : build_(with_species(build, replicas)),
+      grains_at_once_(grains_at_once(device.info(), build)),
       replicas_(std::move(replicas)),
       layout_((expect_within_limits(device.info(), build_, replicas_, sizes_of(packings)),
                make_layout(packings, build_.block()))),
@@ -164,16 +173,12 @@ void Engine::choose(const std::vector<char>& active) {
 void Engine::begin_interval(const std::vector<StepInterval>& intervals) {
     intervals_ = intervals;
     std::vector<char> active(layout_.replicas());
-    int most = 0;
-    for (int r = 0; r < layout_.replicas(); ++r) {
-        active[r] = intervals[r].steps > 0;
-        most = std::max(most, intervals[r].steps);
-    }
-    if (most == 0) return;
+    for (int r = 0; r < layout_.replicas(); ++r) active[r] = intervals[r].steps > 0;
+    if (std::ranges::count(active, 1) == 0) return;
     choose(active);
     upload_intervals(intervals);
     find_neighbours(active);
-    make_steps(most);
+    make_steps();
     measure();
     fields_.reports.flush();
 }
@@ -232,16 +237,31 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     }
 }
 
-/// The number of launches is even, so that every double-buffered field ends in its original buffer. Replicas
-/// that have made their steps are skipped.
-void Engine::make_steps(int steps) {
+/// Enqueues these steps of the work-groups. Replicas that have made their steps are skipped. The number of
+/// launches is even, so that every double-buffered field ends in its original buffer.
+void Engine::make_steps(int steps, Groups groups) {
     auto& f = fields_;
     for (int s = 0; s < steps + steps % 2; ++s) {
         const int p = s % 2;
-        kernels_.advance(working_.blocks.size(), s, f.slot_count, f.replicas, f.materials, f.blocks,
-                         f.replica_of_block, f.stop_at, f.motion.now(p), f.motion.next(p), f.partner,
-                         f.partner_slot, f.displacement.now(p), f.displacement.next(p),
-                         f.displacement_history, f.memory_of_contacts, f.tracks, f.status);
+        kernels_.advance(groups, s, f.slot_count, f.replicas, f.materials, f.blocks, f.replica_of_block,
+                         f.stop_at, f.motion.now(p), f.motion.next(p), f.partner, f.partner_slot,
+                         f.displacement.now(p), f.displacement.next(p), f.displacement_history,
+                         f.memory_of_contacts, f.tracks, f.status);
+    }
+}
+
+/// Enqueues the steps of the interval: all steps of a few replicas, then those of the next ones.
+void Engine::make_steps() {
+    std::size_t first_block = 0;
+    for (auto replica = working_.replicas.begin(); replica != working_.replicas.end();) {
+        int steps = 0;
+        std::size_t blocks = 0;
+        for (; replica != working_.replicas.end() && blocks * build_.block() < grains_at_once_; ++replica) {
+            steps = std::max(steps, intervals_[*replica].steps);
+            blocks += layout_.first_block(*replica + 1) - layout_.first_block(*replica);
+        }
+        make_steps(steps, {blocks, first_block});
+        first_block += blocks;
     }
 }
 

@@ -113,7 +113,8 @@ private:
     void choose(const std::vector<char>& active);
     void upload_intervals(const std::vector<StepInterval>& intervals);
     void find_neighbours(const std::vector<char>& active);
-    void make_steps(int steps);
+    void make_steps(int steps, Groups groups);
+    void make_steps();
     void measure();
     std::vector<Mat3> read_stresses(const std::vector<Strain>& strain) const;
     template <class Quantity>
@@ -131,6 +132,7 @@ private:
                                   const Readings& readings) const;
 
     KernelBuild build_;
+    std::size_t grains_at_once_;
     std::vector<Replica> replicas_;
     Layout layout_;
     std::vector<double> time_step_;                       ///< of the scene [s]

@@ -181,7 +181,7 @@ Start pairs_on_a_line(int axis) {
     return start;
 }
 
-// The 16 grains of a vector search common cells, but not if the cell list repeats between them.
+// The 16 grains of a vector search one box of cells, but not if the cell list repeats within it.
 TEST(NeighbourList, HoldsEveryPairIfTheGrainsOfAVectorAreFarApart) {
     const Start probe = pairs_on_a_line(0);
     const auto cells = mcdem::device_replica<mcdem::f32::Replica>(probe.replica, probe.packing, {});

@@ -55,6 +55,23 @@ TEST(Bits, AReplicaIsTheSameAloneAndInAnyBatch) {
     }
 }
 
+// A CPU makes the steps of the first replica before those of the others.
+TEST(Bits, AReplicaIsTheSameBesideMoreGrainsThanFitIntoTheCaches) {
+    const int many = std::max(8192, 2048 * device().info().compute_units);
+    const std::vector<Start> all{jittered_lattice(test_replica(), many, 50), squeezed_lattice(0),
+                                 squeezed_lattice(2)};
+    Batch alone(build(Precision::single_precision), all[1]), beside(build(Precision::single_precision), all);
+    for (int round = 0; round < 3; ++round) {
+        std::vector<mcdem::StepInterval> intervals;
+        for (const int steps : {4, 7, 10})
+            intervals.push_back({steps, all[intervals.size()].replica.plate.start});
+        const auto made = beside.engine().advance(intervals);
+        EXPECT_EQ(made[1].steps, alone.engine().advance({intervals[1]}).front().steps);
+        for (int r = 0; r < 3; ++r) EXPECT_GT(made[r].steps, intervals[r].steps / 2);
+        EXPECT_TRUE(same_bits(alone.engine().state(0), beside.engine().state(1))) << "round " << round;
+    }
+}
+
 // Also while the device is already at work on the next interval.
 TEST(Bits, StatesReadTogetherEqualStatesReadOneByOne) {
     Batch batch(build(Precision::single_precision), starts({0, 1, 2, 3, 4, 5, 6}));
