@@ -146,7 +146,8 @@ INLINE void near_walls(global const Replica* restrict replica, mask is_grain, la
    from slot `from` to its new slot; new neighbours (from < 0) start from zero. */
 INLINE void carry(const slots* from, int count, global real* restrict values, size_t row) {
     lanes kept[SLOTS];
-    for (int c = 0; c < count; ++c) kept[c] = gather(values + row, max(from[c], 0) * LANES + LANE_NUMBERS);
+    for (int c = 0; c < count; ++c)
+        kept[c] = gather(values + row, max(from[c], (slots)(0)) * LANES + LANE_NUMBERS);
     for (int c = 0; c < count; ++c)
         STORE_LANES(WHERE(AS_MASK(from[c] >= 0), kept[c], R(0)), values + SLOT_PLACE(row, c));
 }
