@@ -61,10 +61,7 @@ INLINE Neighbours gather_neighbours(Grain at, const int effects, global const Mo
     neighbour.species = AS_SLOTS(WHERE(wall, R(WALL_COLUMN), other.species));
 #endif
     lanes3 apart = subtract3(there, at.now.position);
-    if (at.replica->container == CONTAINER_PERIODIC) {
-        apart.x = nearest_image(apart.x, at.replica->wall_position[1]);
-        apart.y = nearest_image(apart.y, at.replica->wall_position[3]);
-    }
+    if (at.replica->container == CONTAINER_PERIODIC) apart = nearest_between_sides(at.replica, apart);
     neighbour.velocity = subtract3(moving, at.now.velocity);
     if (at.replica->container == CONTAINER_CELL) {
         const Deformation f = deformation(at.replica, at.elapsed);

@@ -23,6 +23,12 @@ INLINE lanes nearest_image(lanes apart, real size) {
     return apart - size * WHOLE_NUMBER(apart * inverse);
 }
 
+/* The nearest image between periodic sides. */
+INLINE lanes3 nearest_between_sides(global const Replica* restrict replica, lanes3 apart) {
+    return (lanes3){nearest_image(apart.x, replica->wall_position[1]),
+                    nearest_image(apart.y, replica->wall_position[3]), apart.z};
+}
+
 /* The image in [0, size], up to rounding. */
 INLINE real into_cell(real coordinate, real size) { return coordinate - size * floor(coordinate / size); }
 

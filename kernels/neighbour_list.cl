@@ -72,11 +72,7 @@ INLINE void insert_sorted(Rows* rows, mask near, int entry) {
 INLINE lanes3 nearest_apart(global const Replica* restrict replica, Deformation f, lanes3 apart) {
     if (replica->container == CONTAINER_CELL)
         return deformed_lanes(f, nearest_lanes_in_cell(replica, f, apart));
-    if (replica->container == CONTAINER_PERIODIC) {
-        apart.x = nearest_image(apart.x, replica->wall_position[1]);
-        apart.y = nearest_image(apart.y, replica->wall_position[3]);
-    }
-    return apart;
+    return replica->container == CONTAINER_PERIODIC ? nearest_between_sides(replica, apart) : apart;
 }
 
 /* Compares all grains in `box` with the lanes in `searching`. */

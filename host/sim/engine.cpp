@@ -61,19 +61,17 @@ std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> any_device_re
     return device_replicas<f32::Replica>(replicas, packings, layout);
 }
 
-/// Number of grains whose steps are made before those of other replicas. On a CPU their state, about 1 kB per
-/// grain, should fit into the caches; a GPU needs all grains at once.
-std::size_t grains_at_once(const DeviceInfo& device, const KernelBuild& build) {
-    if (build.lanes == 1) return std::numeric_limits<std::size_t>::max();
-    return std::max<std::size_t>(8192, 2048 * device.compute_units);
-}
-
 KernelBuild with_species(KernelBuild build, const std::vector<Replica>& replicas) {
     build.species = materials_kept(replicas);
     return build;
 }
 
 }  // namespace
+
+std::size_t grains_at_once(const DeviceInfo& device, const KernelBuild& build) {
+    if (build.lanes == 1) return std::numeric_limits<std::size_t>::max();
+    return std::max<std::size_t>(8192, 2048 * device.compute_units);
+}
 
 Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> replicas,
                std::vector<Packing> packings)

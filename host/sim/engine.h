@@ -56,6 +56,10 @@ struct Readings {
     PendingCopies copies;  ///< into the vectors above; declared last, so it is waited for before they end
 };
 
+/// Number of grains whose steps of an interval are made before those of other replicas. On a CPU their state,
+/// about 1 kB per grain, should fit into the caches; a GPU needs all grains at once.
+std::size_t grains_at_once(const DeviceInfo& device, const KernelBuild& build);
+
 class Engine {
 public:
     /// `replicas[r]` starts from `packings[r]` at rest.
@@ -132,7 +136,7 @@ private:
                                   const Readings& readings) const;
 
     KernelBuild build_;
-    std::size_t grains_at_once_;
+    std::size_t grains_at_once_;  ///< see grains_at_once()
     std::vector<Replica> replicas_;
     Layout layout_;
     std::vector<double> time_step_;                       ///< of the scene [s]

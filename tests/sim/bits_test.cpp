@@ -57,7 +57,8 @@ TEST(Bits, AReplicaIsTheSameAloneAndInAnyBatch) {
 
 // A CPU makes the steps of the first replica before those of the others.
 TEST(Bits, AReplicaIsTheSameBesideMoreGrainsThanFitIntoTheCaches) {
-    const int many = std::max(8192, 2048 * device().info().compute_units);
+    const auto fitting = mcdem::grains_at_once(device().info(), build(Precision::single_precision));
+    const int many = static_cast<int>(std::min<std::size_t>(fitting, 1 << 15));  // a GPU has no such limit
     const std::vector<Start> all{jittered_lattice(test_replica(), many, 50), squeezed_lattice(0),
                                  squeezed_lattice(2)};
     Batch alone(build(Precision::single_precision), all[1]), beside(build(Precision::single_precision), all);
