@@ -12,23 +12,33 @@ INLINE slots trouble_status(lanes counts) {
     return BITS(deep != 0, STATUS_OVERLAP) | BITS(count != deep, STATUS_UNPROBED);
 }
 
-/* Surface displacements for the next step and those of earlier steps. `history` is a ring buffer of the last
-   four steps. */
+/* Fields of the batch that a step writes. */
+typedef struct {
+    global Motion* motion;
+    global real* displacement;
+    global real* history; /* ring buffer of the surface displacements of the last four steps */
+    global Track* track;
+    global int* status;
+    global volatile int* stop_at;
+} Written;
+
+/* Surface displacements for the next step and those of earlier steps. */
 typedef struct {
     global real* next;
     global const real* two_before;
     global real* four_before; /* replaced by those of this step */
 } Displacements;
 
-INLINE Displacements displacements_of(int step, size_t slot_count, global const Replica* restrict replica,
-                                      global real* next, global real* history) {
-    const int turn = replica->steps_before + step;
-    return (Displacements){next, history + ((turn + 2) & 3) * slot_count, history + (turn & 3) * slot_count};
+INLINE Displacements displacements_of(Grain at, int step, Written to) {
+    const int turn = at.replica->steps_before + step;
+    const size_t slot_count = at.replica->slot_count;
+    return (Displacements){to.displacement, to.history + ((turn + 2) & 3) * slot_count,
+                           to.history + (turn & 3) * slot_count};
 }
 
 #if LANES == 16
-/* Requests the displacements and the neighbours of the next 16 grains. If the state of a launch, about 1 kB
-   per grain, exceeds the caches of the processor, they would otherwise arrive late; in smaller launches these
+/* Requests the displacements and the neighbours of the next 16 grains. If the state of a replica, about 1 kB
+   per grain, exceeds the caches of the processor, they would otherwise arrive late; in smaller replicas these
    instructions would only take time. PoCL's `prefetch` has no code. */
 #define CACHED_GRAINS 32768
 #ifdef __x86_64__
@@ -41,10 +51,11 @@ INLINE void prefetch_slot(global const real* values) {
     if (sizeof(lanes) > 64) PREFETCH(values + LANES / 2); /* the second cache line */
 }
 INLINE void prefetch_next(Grain at, Batch batch, Displacements surfaces) {
-    if (get_global_size(0) * LANES <= CACHED_GRAINS) return;
-    if (get_global_id(0) + 1 == get_global_offset(0) + get_global_size(0)) return; /* the last grains */
+    global const Replica* replica = at.replica;
+    if (replica->grain_count <= CACHED_GRAINS) return;
+    if (at.first + LANES >= replica->first_grain + replica->grain_count) return; /* the last grains */
     const size_t next = at.row + LANES * SLOTS;
-    const bool moves = at.replica->surface != SURFACE_RIGID;
+    const bool moves = replica->surface != SURFACE_RIGID;
     /* The number of slots is that of this work-item, which is about the same. */
     for (int c = 0; c < (moves ? at.count : 0); ++c) {
         prefetch_slot(batch.displacement + SLOT_PLACE(next, c));
@@ -126,73 +137,106 @@ INLINE void displace_surfaces(Grain at, EXCHANGE ContactTable* table, Displaceme
 
 /* Copies the state of a stopped replica to the other buffer of each double-buffered field, so that both
    buffers contain its last state. */
-INLINE void keep_state(Grain at, slots grain, Batch batch, global Motion* restrict motion_next,
-                       global real* restrict displacement_next) {
-    if (IS_LEADER) store_motion(at.now, motion_next, grain);
+INLINE void keep_state(Grain at, slots grain, Batch batch, Written to) {
+    if (IS_LEADER) store_motion(at.now, to.motion, grain);
     if (at.replica->surface == SURFACE_RIGID) return;
     for (int v = 0; v < at.count; ++v)
-        store_slot(load_slot(batch.displacement, at.row, v), displacement_next, at.row, v);
+        store_slot(load_slot(batch.displacement, at.row, v), to.displacement, at.row, v);
 }
 
 /* Integrates and stores the new state. Stops the replica after this step if a grain has a status bit or has
    moved farther than `max_move` since the neighbour list was built. */
-INLINE void finish_step(Grain at, slots grain, GrainSums total, int step, global Motion* restrict motion_next,
-                        global Track* restrict track, global int* restrict status,
-                        global volatile int* restrict stop_at) {
-    global real4* tracks = (global real4*)track;
+INLINE void finish_step(Grain at, slots grain, GrainSums total, int step, Written to) {
+    global real4* tracks = (global real4*)to.track;
     const slots place = grain * TRACK_VECTORS;
     const mask is_grain = AS_MASK(at.now.radius > R(0));
     const Moving after = chosen_motion(is_grain, integrate(at, total.force, total.torque), at.now);
-    store_motion(after, motion_next, grain);
+    store_motion(after, to.motion, grain);
     const lanes4 rotation = gather4(tracks + 1, place);
     scatter4(rotated(rotation, scale3(at.replica->time_step, after.spin)), tracks + 1, place);
-    const lanes3 moved = way_since_listed(at, track, grain, after.position);
+    const lanes3 moved = way_since_listed(at, to.track, grain, after.position);
     const real limit = at.replica->max_move;
     const mask far = AS_MASK(dot3(moved, moved) > limit * limit) & is_grain;
     const slots bits = BITS(is_grain, trouble_status(total.trouble) | motion_status(at, after));
     const mask trouble = AS_MASK(bits != 0);
-    if (ANY(trouble)) report_status(at.first, bits, status);
-    if (ANY(trouble | far)) atomic_min(stop_at, step + 1);
+    if (ANY(trouble)) report_status(at.first, bits, to.status);
+    if (ANY(trouble | far)) atomic_min(to.stop_at, step + 1);
 }
 
-WORK_GROUP(STEP_ITEMS)
-kernel void advance(const int step, const int slot_count, global const Replica* restrict replicas,
-                    global const Material* restrict materials, global const int* restrict blocks,
-                    global const int* restrict replica_of_block, global volatile int* restrict stop_at,
-                    global const Motion* restrict motion, global Motion* restrict motion_next,
-                    global const int* restrict partner, global const int* restrict partner_slot,
-                    global const real* restrict displacement, global real* restrict displacement_next,
-                    global real* restrict history, global real* restrict memory, global Track* restrict track,
-                    global int* restrict status) {
-    GRAINS_OF_WORK_ITEM
-    const int r = replica_of_block[block];
-    global const Replica* restrict replica = replicas + r;
-    const Batch batch = {motion, partner, partner_slot, displacement, memory};
-    const slots grain = first + LANE_NUMBERS;
-    Grain at = grain_at(replica, materials, r, first, step, load_motion(motion, grain));
+/* One time step of the grains of a work-item. */
+INLINE void advance_grains(Grain at, int step, Batch batch, Written to, EXCHANGE ContactTable* table,
+                           EXCHANGE real* scratch) {
+    global const Replica* restrict replica = at.replica;
+    const slots grain = at.first + LANE_NUMBERS;
     /* All work-items of a group take the same branch, as barriers require: concurrent writes in this step set
        stop_at to step + 1 at the lowest. */
-    const int last = stop_at[r];
+    const int last = *to.stop_at;
     if (step >= last) {
-        if (step == last) keep_state(at, grain, batch, motion_next, displacement_next);
+        if (step == last) keep_state(at, grain, batch, to);
         return;
     }
-
     slots partners[SLOTS_HERE];
-    at.count = load_partners(partner, at.row, partners);
-    prefetch_next(at, batch, displacements_of(step, slot_count, replica, displacement_next, history));
+    at.count = load_partners(batch.partner, at.row, partners);
+    prefetch_next(at, batch, displacements_of(at, step, to));
     /* Inlined twice; the copy with the constant 0 contains no code for effects. */
     const GrainSums sums = RARELY(replica->effects)
                                ? contact_sums(at, replica->effects, batch, partners, table)
                                : contact_sums(at, 0, batch, partners, table);
     share_sums(sums, scratch);
     SYNCHRONISE();
-    if (replica->surface != SURFACE_RIGID)
-        displace_surfaces(at, table, displacements_of(step, slot_count, replica, displacement_next, history));
+    if (replica->surface != SURFACE_RIGID) displace_surfaces(at, table, displacements_of(at, step, to));
 
     const GrainSums total = add_up(sums, scratch);
-    if (IS_LEADER) finish_step(at, grain, total, step, motion_next, track, status, stop_at + r);
+    if (IS_LEADER) finish_step(at, grain, total, step, to);
     /* Required by PoCL: without this barrier, padding grains execute the block above when work-groups of
        stopped replicas have returned before the barriers. */
     SYNCHRONISE();
+}
+
+/* Of a double-buffered field: what a step reads and what it writes, `made` steps after the first one. */
+#define NOW(made, field) ((made) % 2 ? field##_next : field)
+#define NEXT(made, field) ((made) % 2 ? field : field##_next)
+
+/* `replica_count` = 0: makes step `step` of the blocks `blocks`. Otherwise, only on CPUs and from step 0:
+   makes all steps of the interval for that many replicas, whose first blocks are `blocks`. Each work-item
+   repeatedly takes the next of these replicas. The state of a replica then stays in the caches of one core,
+   and cores do not wait for each other after each step. */
+WORK_GROUP(STEP_ITEMS)
+kernel void advance(const int step, const int replica_count, global const Replica* restrict replicas,
+                    global const Material* restrict materials, global const int* restrict blocks,
+                    global const int* restrict replica_of_block, global volatile int* restrict stop_at,
+                    global Motion* restrict motion, global Motion* restrict motion_next,
+                    global const int* restrict partner, global const int* restrict partner_slot,
+                    global real* restrict displacement, global real* restrict displacement_next,
+                    global real* restrict history, global real* restrict memory, global Track* restrict track,
+                    global int* restrict status) {
+    MEMORY_OF_WORK_ITEM
+#if LANES == 16
+    const bool whole = replica_count > 0;
+    global volatile int* taken = stop_at + replicas->batch_size;
+    const int turns = whole ? replica_count : (int)get_num_groups(0);
+    int turn = whole ? atomic_inc(taken) : (int)get_group_id(0);
+    while (turn < turns) {
+        const int block = blocks[turn], r = replica_of_block[block], first = FIRST_GRAIN(block);
+        global const Replica* restrict replica = replicas + r;
+        const int end = whole ? replica->first_grain + replica->grain_count : first + LANES;
+        for (int made = 0; made <= (whole ? stop_at[r] : 0); ++made) {
+            const Batch batch = {NOW(made, motion), partner, partner_slot, NOW(made, displacement), memory};
+            const Written to = {NEXT(made, motion), NEXT(made, displacement), history, track, status,
+                                stop_at + r};
+            for (int k = first; k < end; k += LANES) {
+                const Grain at = grain_at(replica, materials, r, k, step + made,
+                                          load_motion(batch.motion, k + LANE_NUMBERS));
+                advance_grains(at, step + made, batch, to, table, scratch);
+            }
+        }
+        turn = whole ? atomic_inc(taken) : turns;
+    }
+#else
+    const int block = blocks[get_group_id(0)], r = replica_of_block[block], first = FIRST_GRAIN(block);
+    const Batch batch = {motion, partner, partner_slot, displacement, memory};
+    const Written to = {motion_next, displacement_next, history, track, status, stop_at + r};
+    const Grain at = grain_at(replicas + r, materials, r, first, step, load_motion(motion, first));
+    advance_grains(at, step, batch, to, table, scratch);
+#endif
 }

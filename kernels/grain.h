@@ -1,29 +1,26 @@
 /* Assignment of grains to work-items, and sums over the slots of a grain, for the CPU and the GPU layout.
-   Kernels that process contacts begin with GRAINS_OF_WORK_ITEM, which declares `block`, `first` (the first
-   grain of the work-item), `table` (its contact table) and `scratch` (for sums over slots). A launch on a CPU
-   may begin with any of the blocks; on a GPU it begins with the first one. */
+   Kernels that process contacts begin with MEMORY_OF_WORK_ITEM, which declares `table` (the contact table of
+   its grains) and `scratch` (for sums over slots). FIRST_GRAIN(block) is the first grain of the work-item. */
 #define SLOT_SUMS 7            /* sums per step: force, torque, slots with a status */
 #define SHARED_ROW (SLOTS + 1) /* odd, so that rows start in different banks of local memory */
 #if LANES == 16
 #define IS_LEADER true
 #define STEP_ITEMS (BLOCK / LANES) /* work-group size */
-#define GRAINS_OF_WORK_ITEM                                                        \
-    const int block = blocks[get_group_id(0) + get_global_offset(0) / STEP_ITEMS]; \
-    const int first = block * BLOCK + (int)get_local_id(0) * LANES;                \
-private                                                                            \
-    ContactTable own_table;                                                        \
-private                                                                            \
-    real scratch[1];                                                               \
+#define FIRST_GRAIN(block) ((block)*BLOCK + (int)get_local_id(0) * LANES)
+#define MEMORY_OF_WORK_ITEM \
+private                     \
+    ContactTable own_table; \
+private                     \
+    real scratch[1];        \
     EXCHANGE ContactTable* table = &own_table;
 #else
 #define STEP_ITEMS (BLOCK * SLOTS)
 #define IS_LEADER (get_local_id(0) % SLOTS == 0)
-#define GRAINS_OF_WORK_ITEM                                           \
-    const int block = blocks[get_group_id(0)];                        \
-    const int first = block * BLOCK + (int)(get_local_id(0) / SLOTS); \
-    local ContactTable tables[BLOCK];                                 \
-    local real scratches[BLOCK][SLOT_SUMS * SHARED_ROW];              \
-    EXCHANGE ContactTable* table = &tables[get_local_id(0) / SLOTS];  \
+#define FIRST_GRAIN(block) ((block)*BLOCK + (int)(get_local_id(0) / SLOTS))
+#define MEMORY_OF_WORK_ITEM                                          \
+    local ContactTable tables[BLOCK];                                \
+    local real scratches[BLOCK][SLOT_SUMS * SHARED_ROW];             \
+    EXCHANGE ContactTable* table = &tables[get_local_id(0) / SLOTS]; \
     EXCHANGE real* scratch = scratches[get_local_id(0) / SLOTS];
 #endif
 

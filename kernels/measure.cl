@@ -106,8 +106,8 @@ kernel void measure(global const Replica* restrict replicas, global const Materi
                     global real* restrict force_y, global real* restrict force_z,
                     global real* restrict overlap, global real* restrict arm, global real4* restrict energy,
                     global real* restrict frequency) {
-    GRAINS_OF_WORK_ITEM
-    const int r = replica_of_block[block];
+    MEMORY_OF_WORK_ITEM
+    const int block = blocks[get_group_id(0)], r = replica_of_block[block], first = FIRST_GRAIN(block);
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
     const slots grain = first + LANE_NUMBERS;

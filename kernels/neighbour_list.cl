@@ -172,13 +172,13 @@ INLINE void find_previous(const Rows* rows, const slots* before, int count, slot
 }
 
 WORK_GROUP(SEARCH_ITEMS)
-kernel void list_neighbours(const int block_count, const int slot_count,
-                            global const Replica* restrict replicas, global const int* restrict blocks,
-                            global const int* restrict replica_of_block, global const Motion* restrict motion,
-                            global const int* restrict cell_head, global const int* restrict cell_next,
-                            global int* restrict partner, global real* restrict displacement,
-                            global real* restrict history, global real* restrict memory,
-                            global Track* restrict track, global int* restrict status) {
+kernel void list_neighbours(const int block_count, global const Replica* restrict replicas,
+                            global const int* restrict blocks, global const int* restrict replica_of_block,
+                            global const Motion* restrict motion, global const int* restrict cell_head,
+                            global const int* restrict cell_next, global int* restrict partner,
+                            global real* restrict displacement, global real* restrict history,
+                            global real* restrict memory, global Track* restrict track,
+                            global int* restrict status) {
     const int first = listed_grain(blocks, block_count, LANES);
     if (first < 0) return;
     global const Replica* restrict replica = replicas + replica_of_block[first / BLOCK];
@@ -204,7 +204,8 @@ kernel void list_neighbours(const int block_count, const int slot_count,
     find_previous(&rows, before, count, from);
     if (moves) {
         carry(from, count, displacement, row);
-        for (int turn = 0; turn < 4; ++turn) carry(from, count, history + (size_t)turn * slot_count, row);
+        for (int turn = 0; turn < 4; ++turn)
+            carry(from, count, history + (size_t)turn * replica->slot_count, row);
     }
     for (int kind = 0; kind < replica->memory_rows; ++kind)
         carry(from, count, memory + row * replica->memory_rows, (size_t)kind * SLOTS * LANES);

@@ -48,6 +48,8 @@ typedef struct {
     int rolling_row;     /* first of the three rows of rolling resistance */
     int effects;         /* EFFECT_* bits: effects beyond the plain model */
     int container;       /* CONTAINER_* below */
+    int slot_count;      /* of the batch, all grains with surface displacements; 1 if none */
+    int batch_size;      /* replicas of the batch */
 } Replica;
 
 /* BOX: six walls. CYLINDER: floor, plate, and a curved wall (number 0) that touches x_min, x_max, y_min and

@@ -17,13 +17,6 @@ struct Next {
     Field<Quantity>& field;
 };
 
-/// Work-groups of a launch: `count` from number `first`.
-struct Groups {
-    Groups(std::size_t number_of_groups, std::size_t first_group = 0)
-        : count(number_of_groups), first(first_group) {}
-    std::size_t count, first;
-};
-
 /// Throws InputError if the device cannot run work-groups of this size with this kernel.
 void expect_launchable(const Device& device, const cl::Kernel& kernel, int work_items);
 
@@ -44,18 +37,17 @@ public:
     }
 
     /// Enqueues the work-groups; does not wait.
-    void operator()(Groups groups, const Arguments&... arguments) {
-        if (groups.count == 0) return;
+    void operator()(std::size_t groups, const Arguments&... arguments) {
+        if (groups == 0) return;
         cl_uint index = 0;
         (set(index++, arguments), ...);
-        const cl::NDRange first(groups.first * work_items_), all(groups.count * work_items_),
-            group(work_items_);
+        const cl::NDRange all(groups * work_items_), group(work_items_);
         if (!is_profiling()) {
-            queue_.enqueueNDRangeKernel(kernel_, first, all, group);
+            queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, all, group);
             return;
         }
         cl::Event event;
-        queue_.enqueueNDRangeKernel(kernel_, first, all, group, nullptr, &event);
+        queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, all, group, nullptr, &event);
         profile_launch(name_, event);
     }
 

@@ -68,15 +68,15 @@ KernelBuild with_species(KernelBuild build, const std::vector<Replica>& replicas
 
 }  // namespace
 
-std::size_t grains_at_once(const DeviceInfo& device, const KernelBuild& build) {
+std::size_t enough_replicas(const DeviceInfo& device, const KernelBuild& build) {
     if (build.lanes == 1) return std::numeric_limits<std::size_t>::max();
-    return std::max<std::size_t>(8192, 2048 * device.compute_units);
+    return 2 * device.compute_units;
 }
 
 Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> replicas,
                std::vector<Packing> packings)
     : build_(with_species(build, replicas)),
-      grains_at_once_(grains_at_once(device.info(), build)),
+      enough_replicas_(enough_replicas(device.info(), build)),
       replicas_(std::move(replicas)),
       layout_((expect_within_limits(device.info(), build_, replicas_, sizes_of(packings)),
                make_layout(packings, build_.block()))),
@@ -96,7 +96,13 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
         shortening_.push_back(0);
         excess_compliance_.push_back(mcdem::excess_compliance(replicas_[r], packings[r].size()));
         reach_.push_back(list_reach(replicas_[r], packings[r]));
-        skin_.push_back(std::visit([&](const auto& all) { return double(all[r].skin); }, device_replicas_));
+        std::visit(
+            [&](auto& all) {
+                all[r].slot_count = fields_.slot_count;
+                all[r].batch_size = layout_.replicas();
+                skin_.push_back(all[r].skin);
+            },
+            device_replicas_);
     }
     upload_materials();
     upload_packings(packings);
@@ -164,6 +170,9 @@ void Engine::choose(const std::vector<char>& active) {
     if (active == active_) return;
     active_ = active;
     working_ = part(active);
+    std::vector<int> first_blocks;
+    for (const int r : working_.replicas) first_blocks.push_back(layout_.first_block(r));
+    fields_.first_blocks.write(first_blocks.data(), 0, first_blocks.size() * sizeof(int));
     fields_.blocks.write(working_.blocks.data(), 0, working_.blocks.size() * sizeof(int));
     fields_.portions.write(working_.portions.data(), 0, working_.portions.size() * sizeof(Portion));
 }
@@ -184,6 +193,7 @@ void Engine::begin_interval(const std::vector<StepInterval>& intervals) {
 void Engine::upload_intervals(const std::vector<StepInterval>& intervals) {
     std::vector<int> steps;
     for (const auto& interval : intervals) steps.push_back(interval.steps);
+    steps.push_back(0);  // no replica is taken yet
     fields_.stop_at.write(steps.data());
     std::visit(
         [&](auto& all) {
@@ -222,7 +232,7 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     kernels_.empty_cells(stale.portions.size(), f.replicas, f.rebuilt, f.cell_head);
     kernels_.fill_cells(by_grain, blocks, f.replicas, f.rebuilt_blocks, f.replica_of_block, f.motion.now(0),
                         f.cell_head, f.cell_next);
-    kernels_.list_neighbours(groups(build_.search_items(), build_.lanes), blocks, f.slot_count, f.replicas,
+    kernels_.list_neighbours(groups(build_.search_items(), build_.lanes), blocks, f.replicas,
                              f.rebuilt_blocks, f.replica_of_block, f.motion.now(0), f.cell_head, f.cell_next,
                              f.partner, f.displacement.now(0), f.displacement_history, f.memory_of_contacts,
                              f.tracks, f.status);
@@ -235,32 +245,27 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     }
 }
 
-/// Enqueues these steps of the work-groups. Replicas that have made their steps are skipped. The number of
-/// launches is even, so that every double-buffered field ends in its original buffer.
-void Engine::make_steps(int steps, Groups groups) {
+/// Enqueues the steps of the interval: in one launch if there is enough work for each core, otherwise in one
+/// launch per step. Replicas that have made their steps are skipped. The number of launches is even, so that
+/// every double-buffered field ends in its original buffer.
+void Engine::make_steps() {
     auto& f = fields_;
-    for (int s = 0; s < steps + steps % 2; ++s) {
-        const int p = s % 2;
-        kernels_.advance(groups, s, f.slot_count, f.replicas, f.materials, f.blocks, f.replica_of_block,
+    const auto advance = [&](std::size_t groups, int step, int replicas, auto& blocks) {
+        const int p = step % 2;
+        kernels_.advance(groups, step, replicas, f.replicas, f.materials, blocks, f.replica_of_block,
                          f.stop_at, f.motion.now(p), f.motion.next(p), f.partner, f.partner_slot,
                          f.displacement.now(p), f.displacement.next(p), f.displacement_history,
                          f.memory_of_contacts, f.tracks, f.status);
+    };
+    int steps = 0, largest = 1;
+    for (const int r : working_.replicas) {
+        steps = std::max(steps, intervals_[r].steps);
+        largest = std::max(largest, layout_.first_block(r + 1) - layout_.first_block(r));
     }
-}
-
-/// Enqueues the steps of the interval: all steps of a few replicas, then those of the next ones.
-void Engine::make_steps() {
-    std::size_t first_block = 0;
-    for (auto replica = working_.replicas.begin(); replica != working_.replicas.end();) {
-        int steps = 0;
-        std::size_t blocks = 0;
-        for (; replica != working_.replicas.end() && blocks * build_.block() < grains_at_once_; ++replica) {
-            steps = std::max(steps, intervals_[*replica].steps);
-            blocks += layout_.first_block(*replica + 1) - layout_.first_block(*replica);
-        }
-        make_steps(steps, {blocks, first_block});
-        first_block += blocks;
-    }
+    const std::size_t blocks = working_.blocks.size();
+    if (blocks / largest >= enough_replicas_)
+        return advance(enough_replicas_, 0, static_cast<int>(working_.replicas.size()), f.first_blocks);
+    for (int step = 0; step < steps + steps % 2; ++step) advance(blocks, step, 0, f.blocks);
 }
 
 void Engine::measure() {
@@ -343,7 +348,7 @@ std::vector<IntervalResult> Engine::finish_interval() {
     std::vector<IntervalResult> results(layout_.replicas());
     if (std::ranges::all_of(intervals, [](const auto& interval) { return interval.steps == 0; }))
         return results;
-    std::vector<int> made(layout_.replicas());
+    std::vector<int> made(layout_.replicas() + 1);
     fields_.stop_at.read(made.data());
     std::visit(
         [&]<class DeviceReplica>(const std::vector<DeviceReplica>&) {

@@ -56,9 +56,9 @@ struct Readings {
     PendingCopies copies;  ///< into the vectors above; declared last, so it is waited for before they end
 };
 
-/// Number of grains whose steps of an interval are made before those of other replicas. On a CPU their state,
-/// about 1 kB per grain, should fit into the caches; a GPU needs all grains at once.
-std::size_t grains_at_once(const DeviceInfo& device, const KernelBuild& build);
+/// If the active replicas have this many times the grains of the largest one, the device makes all steps of
+/// one replica after another: on a CPU two per core; never on a GPU, which needs all grains at once.
+std::size_t enough_replicas(const DeviceInfo& device, const KernelBuild& build);
 
 class Engine {
 public:
@@ -117,7 +117,6 @@ private:
     void choose(const std::vector<char>& active);
     void upload_intervals(const std::vector<StepInterval>& intervals);
     void find_neighbours(const std::vector<char>& active);
-    void make_steps(int steps, Groups groups);
     void make_steps();
     void measure();
     std::vector<Mat3> read_stresses(const std::vector<Strain>& strain) const;
@@ -136,7 +135,7 @@ private:
                                   const Readings& readings) const;
 
     KernelBuild build_;
-    std::size_t grains_at_once_;  ///< see grains_at_once()
+    std::size_t enough_replicas_;  ///< see enough_replicas()
     std::vector<Replica> replicas_;
     Layout layout_;
     std::vector<double> time_step_;                       ///< of the scene [s]

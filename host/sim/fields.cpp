@@ -29,13 +29,14 @@ void Fields::visit_extents(const FieldExtents& extents, Make make) {
     make(replicas, extents.replicas, is_double ? sizeof(f64::Replica) : sizeof(f32::Replica));
     make(materials, extents.replicas * extents.species,
          is_double ? sizeof(f64::Material) : sizeof(f32::Material));
-    make(stop_at, extents.replicas, sizeof(int));
+    make(stop_at, extents.replicas + 1, sizeof(int));
     make(reports, extents.portions, is_double ? sizeof(f64::Report) : sizeof(f32::Report));
     make(cell_moments, extents.needs.cells ? 9 * extents.portions : 1, real);
     make(portions, extents.portions, sizeof(Portion));
     make(rebuilt, extents.portions, sizeof(Portion));
     make(blocks, extents.blocks, sizeof(int));
     make(rebuilt_blocks, extents.blocks, sizeof(int));
+    make(first_blocks, extents.replicas, sizeof(int));
     make(replica_of_block, extents.blocks, sizeof(int));
     make_pair(motion, extents.grains, reals_of_motion * real);
     make(tracks, extents.grains, reals_of_track * real);

@@ -91,13 +91,14 @@ struct Fields {
     /// Memory of fields with these extents, computed without a device.
     static FieldMemory memory_of(const FieldExtents& extents);
 
-    Field<Constants> replicas;             ///< per replica
-    Field<Materials> materials;            ///< per species of a replica
-    Field<StopAt> stop_at;                 ///< per replica: steps in this interval
-    Field<Reports> reports;                ///< per active portion
+    Field<Constants> replicas;   ///< per replica
+    Field<Materials> materials;  ///< per species of a replica
+    Field<StopAt> stop_at;       ///< per replica: steps in this interval; then the number of replicas taken
+    Field<Reports> reports;      ///< per active portion
     Field<CellMoments> cell_moments;       ///< per active portion, 9 reals each
     Field<Portions> portions, rebuilt;     ///< per active portion
     Field<Blocks> blocks, rebuilt_blocks;  ///< per active block
+    Field<Blocks> first_blocks;            ///< per active replica
     Field<ReplicaOfBlock> replica_of_block;
     Pair<Motion> motion;
     Field<Tracks> tracks;
@@ -153,7 +154,7 @@ struct Kernels {
     Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
            Field<CellNext>>
         fill_cells;
-    Kernel<int, int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
+    Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
            Field<CellNext>, Field<Partner>, Now<SurfaceDisplacement>, Field<DisplacementHistory>,
            Field<ContactMemory>, Field<Tracks>, Field<Status>>
         list_neighbours;

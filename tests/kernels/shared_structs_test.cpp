@@ -40,7 +40,7 @@ kernel void write_offsets(global int* offsets) {
     MEMBER(plate_tilt_x) MEMBER(plate_tilt_y) \
     MEMBER(adhesion) MEMBER(cohesion) MEMBER(net_force_friction) MEMBER(viscoelasticity) MEMBER(relaxing_share) MEMBER(stiffening) \
     MEMBER(plasticity) MEMBER(bulge_contacts) MEMBER(mindlin_share) MEMBER(rolling_resistance) \
-    MEMBER(effects) MEMBER(container)
+    MEMBER(effects) MEMBER(container) MEMBER(slot_count) MEMBER(batch_size)
 #define MEMBERS_OF_REPORT(MEMBER) \
     MEMBER(kinetic_energy) MEMBER(elastic_energy) MEMBER(moved_squared) MEMBER(deepest_overlap) \
     MEMBER(frequency) MEMBER(wall_force) MEMBER(status) MEMBER(failed_grain)

@@ -9,8 +9,9 @@ constexpr int quantities = 7, sums = quantities + 2, slots = 16;
 
 const char* const sum_kernel = R"(
 WORK_GROUP(STEP_ITEMS) kernel void sum_rows(global const int* blocks, global const real* values, global real* out) {
-    GRAINS_OF_WORK_ITEM
+    MEMORY_OF_WORK_ITEM
     (void)table;
+    const int first = FIRST_GRAIN(blocks[get_group_id(0)]);
     global const real* row = values + first * 7 * SLOTS;
     lanes v[7];
     for (int q = 0; q < 7; ++q) v[q] = load_slot(row, q * SLOTS, 0);

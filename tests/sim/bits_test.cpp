@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 
 #include "core/errors.h"
 #include "core/names.h"
@@ -55,22 +56,31 @@ TEST(Bits, AReplicaIsTheSameAloneAndInAnyBatch) {
     }
 }
 
-// A CPU makes the steps of the first replica before those of the others.
-TEST(Bits, AReplicaIsTheSameBesideMoreGrainsThanFitIntoTheCaches) {
-    const auto fitting = mcdem::grains_at_once(device().info(), build(Precision::single_precision));
-    const int many = static_cast<int>(std::min<std::size_t>(fitting, 1 << 15));  // a GPU has no such limit
-    const std::vector<Start> all{jittered_lattice(test_replica(), many, 50), squeezed_lattice(0),
-                                 squeezed_lattice(2)};
-    Batch alone(build(Precision::single_precision), all[1]), beside(build(Precision::single_precision), all);
-    for (int round = 0; round < 3; ++round) {
+// With several replicas per core a CPU makes all steps of one replica after another, otherwise one step of
+// all in turn. Intervals have odd and even numbers of steps, some end early, and some replicas take no part.
+TEST(Bits, AReplicaIsTheSameBesideEnoughReplicasForEachCore) {
+    const KernelBuild kernels = build(Precision::single_precision);
+    const auto enough = std::min<std::size_t>(mcdem::enough_replicas(device().info(), kernels), 100);
+    std::vector<int> kinds;
+    for (std::size_t r = 0; r < 3 * enough + 5; ++r) kinds.push_back(static_cast<int>(r % 7));
+    Batch beside(kernels, starts(kinds));
+    std::deque<Batch> alone;
+    for (int r = 0; r < 7; ++r) alone.emplace_back(kernels, squeezed_lattice(r));
+    int cut_short = 0;
+    for (int round = 0; round < 8; ++round) {
         std::vector<mcdem::StepInterval> intervals;
-        for (const int steps : {4, 7, 10})
-            intervals.push_back({steps, all[intervals.size()].replica.plate.start});
+        for (int r = 0; r < static_cast<int>(kinds.size()); ++r)
+            intervals.push_back(
+                {(r + round) % 5 == 0 ? 0 : 7 + (r + 2 * round) % 4, beside.start(r).replica.plate.start});
         const auto made = beside.engine().advance(intervals);
-        EXPECT_EQ(made[1].steps, alone.engine().advance({intervals[1]}).front().steps);
-        for (int r = 0; r < 3; ++r) EXPECT_GT(made[r].steps, intervals[r].steps / 2);
-        EXPECT_TRUE(same_bits(alone.engine().state(0), beside.engine().state(1))) << "round " << round;
+        for (int r = 0; r < 7; ++r) {
+            EXPECT_EQ(alone[r].engine().advance({intervals[r]}).front().steps, made[r].steps);
+            EXPECT_TRUE(same_bits(alone[r].engine().state(0), beside.engine().state(r)))
+                << r << ", round " << round;
+            cut_short += made[r].steps < intervals[r].steps;
+        }
     }
+    EXPECT_GT(cut_short, 0);
 }
 
 // Also while the device is already at work on the next interval.
