@@ -34,7 +34,7 @@ constexpr std::array marks{
     Mark{FileKind::guide, "the guide to an export", "", ""},
     Mark{FileKind::vtk, "an export", "\x89HDF\r\n", "VTKHDF"},
     Mark{FileKind::xyz, "an export", "",
-         " Properties=species:S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:"},
+         " Properties=element:S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:"},
     Mark{FileKind::dump, "an export", "ITEM: TIMESTEP\n", "ITEM: ENTRIES grain partner force_magnitude "},
     Mark{FileKind::manual, "a manual page of mcdem", ".TH MCDEM", ""},
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "core/atomic_file.h"
 #include "core/container.h"
@@ -317,13 +318,25 @@ void write_vtk_walls(const std::filesystem::path& file, const Recording& recordi
     });
 }
 
+/// Removes the files of an earlier export into this folder that the new one has not replaced: ParaView would
+/// show them in the same time series.
+void remove_others(const std::filesystem::path& folder, const std::set<std::filesystem::path>& kept) {
+    std::vector<std::filesystem::path> old;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().extension() == ".hdf" && !kept.count(entry.path())) old.push_back(entry.path());
+    for (const auto& file : old) {
+        expect_replaceable(file, FileKind::vtk);
+        std::filesystem::remove(file);
+    }
+}
+
 int export_vtk_replica(RunReader& reader, std::size_t replica, const std::filesystem::path& folder,
                        const ExportChoice& choice) {
     const Recording& recording = reader.run().recordings[replica];
     const auto sub = folder / export_name(replica, recording.label);
     std::optional<FolderLock> lock;  // protects temporary files of a killed export
     Track track(recording.box);
-    int files = 0;
+    std::set<std::filesystem::path> files;
     for (std::size_t s = 0; s < recording.scans.size(); ++s) {
         const Scan scan = reader.read_scan(replica, s);
         if (scan.position.empty()) continue;
@@ -334,15 +347,15 @@ int export_vtk_replica(RunReader& reader, std::size_t replica, const std::filesy
             lock.emplace(sub, FolderLock::Use::alone);
         }
         const auto file = [&](const char* what) {
-            return sub / fmt::format("{}_{:06}.hdf", what, scan.frame);
+            return *files.insert(sub / fmt::format("{}_{:06}.hdf", what, scan.frame)).first;
         };
         write_vtk_grains(file("grains"), recording, scan, moved);
         write_vtk_contacts(file("contacts"), recording, scan);
         write_vtk_forces(file("forces"), recording, scan);
         write_vtk_walls(file("walls"), recording, scan);
-        files += 4;
     }
-    return files;
+    if (lock) remove_others(sub, files);
+    return static_cast<int>(files.size());
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ overlap. Colour and width of the bonds can follow force_magnitude [N]. In Python
         "Particle Identifiers.2", "force_magnitude", "force_x", "force_y", "force_z", "overlap"])
     pipeline.modifiers.append(contacts)
 
-Of a grain: its species as particle type, radius [m], id, coordination_number (walls counted), force_magnitude (sum of its contacts' [N]), wall_force
+Of a grain: its species as particle type (column element; in ASE an array of that name), radius [m], id, coordination_number (walls counted), force_magnitude (sum of its contacts' [N]), wall_force
 (by the walls [N]). In a container that is periodic along x and y grains are where they have moved to, also out of it:
 modifier "Wrap at periodic boundaries". In a cell they are in an upright box of its lengths. Of a contact: its force on the first of the two grains [N], its overlap [m].
 
@@ -40,7 +40,8 @@ std::string in_quotes(std::string text) {
     return '"' + text + '"';
 }
 
-/// A single word, as the format requires.
+/// A single word, as the format requires. The column is called `element`: OVITO takes it for the particle
+/// type as it takes `species`, which ASE requires to be a chemical element.
 std::string particle_type(const Recording& recording, std::size_t grain) {
     if (recording.species.empty()) return "X";
     std::string word = recording.species_names[static_cast<std::size_t>(recording.species[grain])];
@@ -54,7 +55,7 @@ void append_grains(fmt::memory_buffer& text, const Recording& recording, const S
     fmt::format_to(
         out,
         "{}\nLattice=\"{:.9g} 0 0 {:.9g} {:.9g} 0 {:.9g} {:.9g} {:.9g}\" Origin=\"0 0 0\" pbc=\"{}\" "
-        "Properties=species:S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:force_magnitude:R:1:"
+        "Properties=element:S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:force_magnitude:R:1:"
         "wall_force:R:3 Time={:.9g} frame={} cycle={} phase={} plate_z={:.9g} top_force={:.9g} label={}\n",
         scan.position.size(), now.size_x, now.tilt_xy, now.size_y, now.tilt_xz, now.tilt_yz,
         is_cell(now) ? now.height : recording.plate_start,

@@ -62,10 +62,9 @@ struct Assign {
 private:
     template <class Whole>
     bool whole(MemberOf<Whole> get) const {
-        if (!value.is_integer()) return false;
-        const std::int64_t number = value.as_integer()->get();
-        if (!key.range.contains(static_cast<double>(number))) return false;
-        get(settings) = static_cast<Whole>(number);
+        const auto number = value.value<std::int64_t>();  // also of 60.0, not of 60.5
+        if (!number || value.is_boolean() || !key.range.contains(static_cast<double>(*number))) return false;
+        get(settings) = static_cast<Whole>(*number);
         return true;
     }
 };

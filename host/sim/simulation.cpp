@@ -35,25 +35,32 @@ std::string beyond_law(const Replica& replica, const Scan& scan) {
         scan.max_overlap, name(replica.contact.model), *tested, compress_less(replica));
 }
 
+/// Why an overlap passed its limit, and what to do. `relaxes`: before the plate or the cell has moved.
+std::string cause_of_overlap(const Replica& replica, bool relaxes) {
+    const auto passed =
+        fmt::format("a corrected overlap passed {} of the sum of the radii", replica.numerics.overlap_limit);
+    if (relaxes)
+        return passed + fmt::format(
+                            " while the packing relaxed, before the {} moved: the grains are too soft for "
+                            "their weight (is grains.youngs_modulus in Pa?), the packing is too dense, or "
+                            "the time step is too long (numerics.time_step)",
+                            is_cell(replica.box) ? "cell" : "plate");
+    if (replica.contact.model == ContactModel::hyperelastic_sphere)
+        return passed + fmt::format(" ({}; or raise numerics.overlap_limit, there are solutions beyond)",
+                                    compress_less(replica));
+    return passed +
+           fmt::format(": no static solution at this compression, the force runs away ({}{})",
+                       compress_less(replica),
+                       replica.contact.model == ContactModel::mc_dem ? ", or lower contact.gamma" : "");
+}
+
 /// Advice for each reason why a replica stops (kernels/status.h).
-std::string cause_of(const IntervalResult& result, const Replica& replica, int slots) {
+std::string cause_of(const IntervalResult& result, const Replica& replica, int slots, bool relaxes) {
     std::string cause;
     const auto add = [&](int bit, const std::string& text) {
         if (result.status & bit) cause += (cause.empty() ? "" : "; ") + text;
     };
-    const std::string less = compress_less(replica);
-    if (replica.contact.model == ContactModel::hyperelastic_sphere)
-        add(STATUS_OVERLAP,
-            fmt::format(
-                "a corrected overlap passed {} of the sum of the radii ({}; or raise numerics.overlap_limit, "
-                "there are solutions beyond)",
-                replica.numerics.overlap_limit, less));
-    else
-        add(STATUS_OVERLAP,
-            fmt::format("a corrected overlap passed {} of the sum of the radii: no static solution at this "
-                        "compression, the force runs away ({}{})",
-                        replica.numerics.overlap_limit, less,
-                        replica.contact.model == ContactModel::mc_dem ? ", or lower contact.gamma" : ""));
+    add(STATUS_OVERLAP, cause_of_overlap(replica, relaxes));
     add(STATUS_NOT_A_NUMBER,
         "a position is not a number: the time step is too long (lower numerics.time_step)");
     add(STATUS_LOST,
@@ -224,8 +231,10 @@ Scan Simulation::scan(const Outcome& outcome, ReplicaState state) const {
 }
 
 Failure Simulation::failure(int replica, const IntervalResult& result) const {
-    return {runners_[replica].state().step, result.failed_grain,
-            cause_of(result, scene_.replicas[replica], scene_.slots)};
+    const ProtocolState& state = runners_[replica].state();
+    return {
+        state.step, result.failed_grain,
+        cause_of(result, scene_.replicas[replica], scene_.slots, state.stage == ProtocolState::Stage::relax)};
 }
 
 double Simulation::progress() const {

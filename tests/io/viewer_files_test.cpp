@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <sstream>
 
@@ -71,6 +74,20 @@ TEST(vtk, scans_without_positions_are_omitted) {
     results.append_segment(part_of(run, 2, 4));
     EXPECT_EQ(export_vtk(folder / "out", folder / "a"), 12);
     EXPECT_FALSE(std::filesystem::exists(folder / "a" / first_name / "grains_000001.hdf"));
+}
+
+// ParaView shows all numbered files as one time series.
+TEST(vtk, files_of_an_earlier_export_do_not_remain) {
+    TemporaryFolder folder;
+    write_run(folder / "long.h5", synthetic_run({.replicas = 1, .scans = 4}));
+    write_run(folder / "short.h5", synthetic_run({.replicas = 1, .scans = 2}));
+    export_vtk(folder / "long.h5", folder / "view");
+    export_vtk(folder / "short.h5", folder / "view");
+    const auto files = std::filesystem::directory_iterator(folder / "view" / first_name);
+    EXPECT_EQ(std::ranges::count_if(files, [](const auto& f) { return f.path().extension() == ".hdf"; }), 8);
+    std::ofstream(folder / "view" / first_name / "mine.hdf") << "something else";
+    EXPECT_THROW(export_vtk(folder / "short.h5", folder / "view"), InputError);
+    EXPECT_TRUE(std::filesystem::exists(folder / "view" / first_name / "mine.hdf"));
 }
 
 int frames_in(const std::filesystem::path& file, const std::string& mark) {

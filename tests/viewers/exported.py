@@ -18,12 +18,12 @@ def missing(python, module):
 
 
 class Exported:
-    """A small run of two replicas, exported in one of the formats, in a temporary folder."""
+    """The run of a scene, a small one of two replicas if not stated, exported in one of the formats, in a temporary folder."""
 
-    def __init__(self, program, source, form):
+    def __init__(self, program, source, form, scene="small.toml"):
         self._kept = tempfile.TemporaryDirectory(prefix=f"mcdem-{form}-")
         self.folder = pathlib.Path(self._kept.name)
-        for words in (("run", source / "scenes/small.toml", "--out", "run", "--no-figures"),
+        for words in (("run", source / "scenes" / scene, "--out", "run", "--no-figures"),
                       ("export", "run", f"--{form}", "--out", "view")):
             subprocess.run([str(word) for word in (program, *words)], cwd=self.folder, check=True, capture_output=True)
         self.view = self.folder / "view"

@@ -48,3 +48,11 @@ with exported.open() as file:
         assert frames[0].info["label"] == file[f"particles/{replica}"].attrs["label"].decode()
         for scan, frame in enumerate(frames):
             check_frame(frame, file, replica, scan)
+
+mixed = Exported(program, source, "xyz", "two_species.toml")
+with mixed.open() as file:
+    replica = next(iter(file["observables"]))
+    names = [name.decode() for name in file[f"particles/{replica}/species_names"]]
+    frame = ase.io.read(next(mixed.view.glob(f"{replica}*.xyz")))
+    assert list(frame.arrays["element"]) == [names[one] for one in file[f"particles/{replica}/species"]]
+    assert len(set(frame.arrays["element"])) == 2

@@ -71,7 +71,7 @@ std::vector<Measurement> measurements_of(const Evidence& evidence, const GapData
         const auto all =
             usable_cells(evidence.library.baseline, used, Eigen::VectorXd::Zero(data.mean.size()));
         if (all.size() > data.cells.size())
-            list.push_back({"measure contact forces and positions of grains too",
+            list.push_back({"measure contact forces, with the positions of grains in the same frames",
                             GapSpace(data.noise, mean_of, all, data.free)});
     }
     return list;

@@ -1,6 +1,9 @@
 #include "report/page/labels.h"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cmath>
 #include <set>
 
 #include "core/names.h"
@@ -42,6 +45,11 @@ std::string shortened(const std::string& text, std::size_t most) {
         if (++characters == most) end = i;
     }
     return characters <= most ? text : text.substr(0, end) + "…";
+}
+
+std::string three_digits(double value) {
+    return std::abs(value) < 99.95 || std::abs(value) >= 1e6 ? fmt::format("{:.3g}", value)
+                                                             : fmt::format("{:.0f}", value);
 }
 
 StressUnit stress_unit(double largest) {

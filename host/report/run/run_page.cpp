@@ -91,8 +91,11 @@ std::string of_strokes(const std::vector<Setting>& settings) {
         reached.push_back({row.setting, row.top_force.value,
                            with_error(row.top_force, 2) + " N" +
                                (row.reached ? fmt::format(" at {:.2f} mm", *row.reached * 1e3) : "")});
+    const bool all_reach =
+        std::ranges::none_of(table.rows, [](const ModelRow& row) { return bool(row.reached); });
     return listed(std::isfinite(table.displacement)
-                      ? fmt::format("Force on the plate at {:.2f} mm", table.displacement * 1e3)
+                      ? fmt::format("Force on the plate at {:.2f} mm{}", table.displacement * 1e3,
+                                    all_reach ? "" : ", or as far as a replica came")
                       : "Force on the plate",
                   reached);
 }
@@ -115,12 +118,12 @@ std::string of_programmes(const std::vector<Setting>& settings) {
         if (are_cells(setting.replicas))
             cells.push_back(strongest(setting, &MeanScan::p, [](const MeanScan& scan) {
                 const StressUnit unit = stress_unit(scan.p.value);
-                return fmt::format("{:.3g} {} at φ = {:.3f}", scan.p.value / unit.size, unit.name,
+                return fmt::format("{} {} at φ = {:.3f}", three_digits(scan.p.value / unit.size), unit.name,
                                    scan.packing_fraction.value);
             }));
         else
             plates.push_back(strongest(setting, &MeanScan::top_force, [](const MeanScan& scan) {
-                return fmt::format("{:.3g} N at {:.2f} mm", scan.top_force.value,
+                return fmt::format("{} N at {:.2f} mm", three_digits(scan.top_force.value),
                                    scan.displacement.value * 1e3);
             }));
     return listed("Largest force on the plate", plates) + listed("Largest mean stress", cells);
