@@ -1,7 +1,7 @@
 /* Finite strain of a grain (contact model `hyperelastic_sphere`). A grain that fills its cell becomes stiffer
    with its mean pressure P = sum F/(4 pi E R^2). The work of its surface displacements, in units of E R^3, is
-     (1 - e) H + g W + g^(5/3) Z + 4 pi (P (q P^2 + t D) g^2 - integral of u(P)),
-     e = (1 + c_h P)^(-2/3), g = 1/(1 + c P),
+     (1 - e) H + g W + z^(5/3) Z + 4 pi (P (q P^2 + t D) z^2 - integral of u(P)),
+     e = (1 + c_h P)^(-2/3), g = 1/(1 + c P), z = 1/(1 + c_z P),
      D   squared deviator of the mean stress: tr(T^2) - P^2/3, T = sum F n n/(4 pi E R^2), tr T = P
      H   3/5 sum F h, with h this grain's share of the Hertz overlap
      W   work at small strain of point forces, and of each contact's own displacement beyond Hertz
@@ -107,7 +107,8 @@ INLINE Confined confined(Grain at, const SurfaceDisplacement* b, EXCHANGE Contac
 
 /* Factors by which pressure reduces the displacements. */
 typedef struct {
-    lanes hertz, work, size; /* e, g, g^(5/3) */
+    lanes hertz, work; /* e, g */
+    lanes cubic, size; /* z, z^(5/3) */
 } Yielding;
 
 INLINE lanes two_thirds(lanes x) {
@@ -115,9 +116,9 @@ INLINE lanes two_thirds(lanes x) {
     return root * root;
 }
 INLINE Yielding yielding(Grain at, lanes pressure) {
-    const lanes g = R(1) / (R(1) + OWN(at, confinement_coupling) * pressure);
-    const Yielding y = {two_thirds(R(1) / (R(1) + OWN(at, confinement_hertz) * pressure)), g,
-                        g * two_thirds(g)};
+    const lanes z = R(1) / (R(1) + OWN(at, confinement_size) * pressure);
+    const Yielding y = {two_thirds(R(1) / (R(1) + OWN(at, confinement_hertz) * pressure)),
+                        R(1) / (R(1) + OWN(at, confinement_coupling) * pressure), z, z * two_thirds(z)};
     return y;
 }
 
@@ -149,7 +150,7 @@ INLINE lanes confined_work(Grain at, Confined grain) {
     const lanes radius = at.now.radius, P = grain.pressure;
     const Yielding y = yielding(at, P);
     const lanes cubic = OWN(at, confinement_volume) * P * P + OWN(at, confinement_shear) * grain.deviator;
-    const lanes volume = R(4) * PI * (P * cubic * y.work * y.work - uniform_work(bulk_of(at), P));
+    const lanes volume = R(4) * PI * (P * cubic * y.cubic * y.cubic - uniform_work(bulk_of(at), P));
     const lanes sum =
         (R(1) - y.hertz) * grain.hertz + y.work * grain.work + y.size * grain.size_work + volume;
     return sum * radius * radius * radius / own_compliance(at);
@@ -163,17 +164,19 @@ typedef struct {
 } Confinement;
 
 INLINE Confinement confinement_of(Grain at, Confined grain) {
-    const lanes P = grain.pressure, c = OWN(at, confinement_coupling), c_hertz = OWN(at, confinement_hertz);
+    const lanes P = grain.pressure, c = OWN(at, confinement_coupling), c_hertz = OWN(at, confinement_hertz),
+                c_size = OWN(at, confinement_size);
     const Yielding y = yielding(at, P);
     const lanes by_pressure = R(2) / R(3) * c_hertz * y.hertz / (R(1) + c_hertz * P) * grain.hertz -
-                              c * y.work * (y.work * grain.work + R(5) / R(3) * y.size * grain.size_work);
-    const lanes volume = OWN(at, confinement_volume) * P * P, shear = OWN(at, confinement_shear);
+                              c * y.work * y.work * grain.work -
+                              R(5) / R(3) * c_size * y.cubic * y.size * grain.size_work;
+    const lanes volume = OWN(at, confinement_volume) * P * P,
+                sheared = OWN(at, confinement_shear) * grain.deviator;
     const lanes cubic =
-        y.work * y.work *
-        (R(3) * volume + shear * grain.deviator - R(2) * c * P * y.work * (volume + shear * grain.deviator));
+        y.cubic * y.cubic * (R(3) * volume + sheared - R(2) * c_size * P * y.cubic * (volume + sheared));
     const Confinement all = {
         y, at.now.radius * (by_pressure / (R(4) * PI) + cubic - uniform_overlap(bulk_of(at), P)),
-        at.now.radius * R(2) * shear * P * y.work * y.work};
+        at.now.radius * R(2) * OWN(at, confinement_shear) * P * y.cubic * y.cubic};
     return all;
 }
 

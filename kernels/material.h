@@ -24,6 +24,7 @@ typedef struct {
     real sphere_self[SELF_TERMS];   /* S0 + S1 ln(a/R) + S2 a/R + ..: displacement of the loaded contact */
     real confinement_hertz;         /* c_h, finite strain (confinement.h) */
     real confinement_coupling;      /* c */
+    real confinement_size;          /* c_z */
     real confinement_volume;        /* q */
     real confinement_shear;         /* t */
     real confinement_bulk[3];       /* u0, u1, u2 */

@@ -18,7 +18,7 @@ struct Coefficients {
 };
 
 // Printed by tests/truth/fit_hyperelastic_sphere.py.
-constexpr double coupling = 1.3148, hertz = 0.8988;
+constexpr double coupling = 1.3148, hertz = 0.8988, size = 1.3148;
 constexpr std::array<Coefficients, 3> fitted{{
     {0.30, {-0.0128, 0.3940, -0.6893}, 0.3061, -0.0091},
     {0.40, {-0.0085, 0.2214, -0.4386}, 0.2282, 0.4952},
@@ -56,7 +56,9 @@ void add_finite_strain(SurfaceLaw& law, double poisson_ratio, double share) {
     law.self[2] -= own(1);
     law.self[3] -= own(2);
     law.point[1] += uniform;
-    law.confinement = {share * hertz, share * coupling,
+    law.confinement = {share * hertz,
+                       share * coupling,
+                       share * size,
                        share * between(poisson_ratio, [](const Coefficients& c) { return c.volume; }),
                        share * between(poisson_ratio, [](const Coefficients& c) { return c.shear; }),
                        uniform_compression(poisson_ratio, share)};

@@ -17,11 +17,11 @@ enum class SurfaceShape { rigid = 0, half_space = 1, sphere = 2 };
 /// Effect of a grain's mean pressure P = sum F/(4 pi E R^2) at finite strain (kernels/confinement.h). Zero at
 /// small strain.
 struct Confinement {
-    double hertz = 0;  ///< stiffens the Hertz part
-    double coupling =
-        0;  ///< stiffens the displacement of contacts by themselves beyond Hertz, and by one another
-    double volume = 0;  ///< q
-    double shear = 0;   ///< t
+    double hertz = 0;     ///< c_h, stiffens the Hertz part
+    double coupling = 0;  ///< c, stiffens displacements of contacts by themselves beyond Hertz and by others
+    double size = 0;      ///< c_z, stiffens the contribution of contact sizes and the terms q and t
+    double volume = 0;    ///< q
+    double shear = 0;     ///< t
     std::array<double, 3>
         bulk{};  ///< uniform compression in powers of P; `point` and `self` do not include it
 };

@@ -61,6 +61,7 @@ void set_surface(Material& m, const Replica& replica, const GrainMaterial& g) {
     std::copy(surface.self.begin(), surface.self.end(), m.sphere_self);
     m.confinement_hertz = surface.confinement.hertz;
     m.confinement_coupling = surface.confinement.coupling;
+    m.confinement_size = surface.confinement.size;
     m.confinement_volume = surface.confinement.volume;
     m.confinement_shear = surface.confinement.shear;
     std::copy(surface.confinement.bulk.begin(), surface.confinement.bulk.end(), m.confinement_bulk);

@@ -34,7 +34,7 @@ kernel void write_offsets(global int* offsets) {
     MEMBER(density) MEMBER(relative_density) MEMBER(weight_density) MEMBER(modulus) MEMBER(shear) \
     MEMBER(damping) MEMBER(friction) MEMBER(half_space_scale) MEMBER(half_space_normal) \
     MEMBER(half_space_shear) MEMBER(sphere_scale) MEMBER(sphere_point) MEMBER(sphere_size) \
-    MEMBER(sphere_self) MEMBER(confinement_hertz) MEMBER(confinement_coupling) MEMBER(confinement_volume) MEMBER(confinement_shear) MEMBER(confinement_bulk) \
+    MEMBER(sphere_self) MEMBER(confinement_hertz) MEMBER(confinement_coupling) MEMBER(confinement_size) MEMBER(confinement_volume) MEMBER(confinement_shear) MEMBER(confinement_bulk) \
     MEMBER(grain_compliance) MEMBER(shear_compliance)
 #define MEMBERS_OF_EFFECTS(MEMBER) \
     MEMBER(plate_tilt_x) MEMBER(plate_tilt_y) \

@@ -147,14 +147,15 @@ inline Works works(const SurfaceLaw& law, const Grain& grain) {
 
 /// Confined work at a mean pressure P (confinement.h).
 inline double confined_work(const mcdem::Confinement& c, const Works& w, double P) {
-    const double e = std::pow(1 + c.hertz * P, -2.0 / 3), g = 1 / (1 + c.coupling * P);
+    const double e = std::pow(1 + c.hertz * P, -2.0 / 3), g = 1 / (1 + c.coupling * P),
+                 z = 1 / (1 + c.size * P);
     const double p = c.bulk[0] > 0 ? std::min(P, 0.1 / c.bulk[0]) : P;  // linear beyond P/K = 0.3
     const double overlap = c.bulk[0] * p + c.bulk[1] * p * p + c.bulk[2] * std::pow(p, 3);
     const double slope = c.bulk[0] + 2 * c.bulk[1] * p + 3 * c.bulk[2] * p * p;
     const double bulk = c.bulk[0] * p * p / 2 + c.bulk[1] * std::pow(p, 3) / 3 +
                         c.bulk[2] * std::pow(p, 4) / 4 + overlap * (P - p) + slope * (P - p) * (P - p) / 2;
-    return (1 - e) * w.hertz + g * w.points + std::pow(g, 5.0 / 3) * w.sizes +
-           4 * std::numbers::pi * (P * (c.volume * P * P + c.shear * w.deviator) * g * g - bulk);
+    return (1 - e) * w.hertz + g * w.points + std::pow(z, 5.0 / 3) * w.sizes +
+           4 * std::numbers::pi * (P * (c.volume * P * P + c.shear * w.deviator) * z * z - bulk);
 }
 
 /// Outward displacement of a slot [m]: the derivative of the work with respect to its force. The derivative
@@ -165,17 +166,18 @@ inline double confined_displacement(const SurfaceLaw& law, const Grain& grain, c
     const auto at = [&](double change) { return confined_work(law.confinement, w, w.pressure + change); };
     const double by_pressure = (8 * (at(step) - at(-step)) - (at(2 * step) - at(-2 * step))) / (12 * step);
     const double e = std::pow(1 + law.confinement.hertz * w.pressure, -2.0 / 3);
-    const double g = 1 / (1 + law.confinement.coupling * w.pressure);
+    const double g = 1 / (1 + law.confinement.coupling * w.pressure),
+                 z = 1 / (1 + law.confinement.size * w.pressure);
     const double per_force = 1 / (grain.youngs_modulus * grain.radius);
     double sum = (1 - e) * hertz_share(grain, c) + grain.radius * by_pressure / (4 * std::numbers::pi);
-    sum += 2 * grain.radius * law.confinement.shear * w.pressure * g * g * deviator_along(grain, c);
+    sum += 2 * grain.radius * law.confinement.shear * w.pressure * z * z * deviator_along(grain, c);
     if (c.force != 0) sum += g * per_force * c.force * whole_self_displacement(law, grain, c);
     for (const Slot& k : grain.slots) {
         if (&k == &c) continue;
         const double s = sine_of_half_angle(k, c);
         sum += per_force * k.force *
                (g * power_sum(law.point, s) / s +
-                std::pow(g, 5.0 / 3) * spread(grain, k, c) * power_sum(law.size, s) / (s * s * s));
+                std::pow(z, 5.0 / 3) * spread(grain, k, c) * power_sum(law.size, s) / (s * s * s));
     }
     return sum;
 }
