@@ -205,9 +205,11 @@ void read_plate(Table& table, double youngs_modulus, Recording& recording) {
         if (force && largest_force > 0 && std::abs(*force) > largest_force)
             table.problem_once(
                 "force",
-                fmt::format("top_force_N must be in newtons: {} is a pressure beyond Young's modulus, {} "
-                            "Pa; divide by 1000 if it is in millinewtons",
-                            *force, youngs_modulus));
+                fmt::format(
+                    "top_force_N must be in newtons: {} is a pressure beyond Young's modulus, {} "
+                    "Pa; divide by 1000 if it is in millinewtons, or correct grains.youngs_modulus if "
+                    "it is not in Pa",
+                    *force, youngs_modulus));
         scan.plate_z = plate_z.value_or(1);
         scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() = force.value_or(0);
         read_time(table, recording.scans, scan);

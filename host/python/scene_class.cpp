@@ -59,6 +59,11 @@ void bind_scene(py::module_& module) {
         .def_property_readonly("parameters", &parameters,
                                "Every key and its value, by replica; None where the key does not apply.")
         .def("__len__", [](const Scene& scene) { return scene.replicas.size(); })
+        .def(py::pickle([](const Scene& scene) { return py::make_tuple(scene.name, scene.text); },
+                        [](const py::tuple& state) {
+                            return parse_scene(state[1].cast<std::string>(), state[0].cast<std::string>(),
+                                               {});
+                        }))
         .def("__repr__", [](const Scene& scene) {
             return "<mcdem.Scene " + scene.name + ": " + std::to_string(scene.replicas.size()) + " replica" +
                    (scene.replicas.size() == 1 ? ">" : "s>");

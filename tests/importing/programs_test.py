@@ -74,7 +74,24 @@ class Forces(ImportCase):
         tables = self.guess(files)
         self.assertNotIn("top_force", self.of(tables, "plate"))
         self.assertEqual(self.of(tables, "plate").word("length_unit"), "mm")
-        self.expect_among(self.unclear(tables), 'role must be confirmed, got "?plate": names say plate_z, but a plate needs its place and its force')
+        self.expect_among(self.unclear(tables), 'role must be confirmed, got "?plate": no column is named as top_force, which a plate')
+
+    def test_of_several_columns_with_one_name_must_be_confirmed(self):
+        files = self.write_lab()
+        self.write("kraft.csv", Style(",", ".").table(["height_mm", "Force (N)", "Force (N)"], (
+            (1e3 * s.plate_z, s.top_force, 3 * s.top_force) for s in self.truth.scans)))
+        tables = self.guess(files)
+        self.assertEqual(self.of(tables, "plate").word("top_force"), "Force (N)")
+        self.expect_among(self.unclear(tables), "several columns have this very name")
+
+    def test_of_a_testing_machine_say_what_is_missing(self):
+        files = self.write_lab()
+        rows = [(1e3 * s.plate_z, s.top_force) for s in self.truth.scans]
+        self.write("kraft.csv", Style(",", ".").table(["Platen position (mm)", "Load (N)"], rows))
+        self.assertEqual(self.of(self.guess(files), "plate").word("plate_z"), "Platen position (mm)")
+        self.write("kraft.csv", Style(",", ".").table(["Jaw (mm)", "Load (N)"], rows))
+        self.expect_among(self.unclear(self.guess(files)), "no column is named as plate_z or displacement, which a plate's table must have; "
+                                                           "other columns: Jaw (mm)")
 
 
 class Images(ImportCase):

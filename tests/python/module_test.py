@@ -2,6 +2,7 @@
 import gc
 import os
 import pathlib
+import pickle
 import re
 import signal
 import sys
@@ -27,6 +28,11 @@ class Folder(unittest.TestCase):
 
 
 class Scenes(Folder):
+    def test_is_pickled_for_other_processes(self):
+        scene = mcdem.Scene({"grains.friction": 0.2, "batch.replicas": 2})
+        copy = pickle.loads(pickle.dumps(scene))
+        self.assertEqual((copy.name, copy.text, copy.labels, copy.parameters), (scene.name, scene.text, scene.labels, scene.parameters))
+
     def test_tables_nested_dotted_and_from_text_are_one_scene(self):
         nested = mcdem.Scene({"grains": {"friction": 0.25}}, **SMALL)
         dotted = mcdem.Scene({"grains.friction": np.float64(0.25)}, **SMALL)

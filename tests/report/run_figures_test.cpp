@@ -53,7 +53,8 @@ TEST(RunFigures, the_distribution_is_that_of_the_level_nearest_to_the_request) {
     EXPECT_NEAR(values["displacement_mm"].get<double>(), 18, 1e-9);
     EXPECT_EQ(values["series"][0]["curves"][0]["phase"], "unload");
     const auto other = values_of(group_by_setting(run), {}, {.distribution_displacement = 50e-3});
-    EXPECT_NEAR(other["force_distribution"]["displacement_mm"].get<double>(), 27, 1e-9);
+    EXPECT_NEAR(other["force_distribution"]["displacement_mm"].get<double>(), 30, 1e-9);
+    EXPECT_EQ(other["force_distribution"]["series"][0]["curves"][0]["phase"], "load") << "the turning point";
 }
 
 TEST(RunFigures, the_distribution_is_of_loading_if_runs_stopped_before_unloading) {

@@ -38,7 +38,7 @@ TEST(MainResult, OfManySettingsIsTheirRange) {
 
 TEST(MainResult, OfProgrammesIsTheLargestForceOrStress) {
     const Recording cell = synthetic::cell("mc_dem");
-    EXPECT_EQ(main_result({{"mc_dem", {&cell}}}), "Largest mean stress: MC-DEM 5.88e+03 Pa at φ = 0.620.");
+    EXPECT_EQ(main_result({{"mc_dem", {&cell}}}), "Largest mean stress: MC-DEM 5880 Pa at φ = 0.620.");
     Recording held = synthetic::recording({.levels = 2});
     held.parameters["programme.1.stage"] = "\"hold\"";
     EXPECT_EQ(main_result({{"mc_dem", {&held}}}), "Largest force on the plate: MC-DEM 15 N at 30.00 mm.");

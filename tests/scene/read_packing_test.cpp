@@ -108,6 +108,12 @@ TEST(CsvPacking, ColumnsMayBeInAnyOrder) {
     EXPECT_EQ(packing.position[1], Vec3(4, 5, 6));
 }
 
+TEST(CsvPacking, QuotationMarksOfSpreadsheetsAreNoPartOfACell) {
+    const Packing packing = csv("\"x_m\",\"y_m\",\"z_m\",\"diameter_m\"\n1,\"2\",3,0.5\n");
+    ASSERT_EQ(packing.size(), 1u);
+    EXPECT_EQ(packing.position[0], Vec3(1, 2, 3));
+}
+
 TEST(CsvPacking, WrongFilesAreRefused) {
     EXPECT_THAT(csv_problems(""),
                 ElementsAre("p.csv: is empty: it must begin with the header x_m,y_m,z_m,diameter_m"));

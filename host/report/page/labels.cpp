@@ -21,6 +21,26 @@ constexpr std::array<const char*, 7> palette{"#0072B2", "#56B4E9", "#009E73", "#
                                              "#D55E00", "#CC79A7", "#666666"};
 constexpr std::array<const char*, 7> markers{"s", "^", "v", "D", "o", "p", "h"};
 
+/// Colours of matplotlib's "viridis", without the yellow end: readable by colour-blind readers and in grey.
+constexpr std::array<std::array<int, 3>, 8> ramp{{{0x44, 0x01, 0x54},
+                                                  {0x46, 0x32, 0x7e},
+                                                  {0x36, 0x5c, 0x8d},
+                                                  {0x27, 0x7f, 0x8e},
+                                                  {0x1f, 0xa1, 0x87},
+                                                  {0x4a, 0xc1, 0x6d},
+                                                  {0x9f, 0xda, 0x3a},
+                                                  {0xc2, 0xdf, 0x23}}};
+
+/// Colour at `place` between 0 and 1 of the ramp.
+std::string ramp_colour(double place) {
+    const double at = place * (ramp.size() - 1);
+    const auto low = std::min(static_cast<std::size_t>(at), ramp.size() - 2);
+    std::string colour = "#";
+    for (std::size_t c = 0; c < 3; ++c)
+        colour += fmt::format("{:02x}", std::lround(std::lerp(ramp[low][c], ramp[low + 1][c], at - low)));
+    return colour;
+}
+
 }  // namespace
 
 std::string words_for(const std::string& label) {
@@ -48,8 +68,9 @@ std::string shortened(const std::string& text, std::size_t most) {
 }
 
 std::string three_digits(double value) {
-    return std::abs(value) < 99.95 || std::abs(value) >= 1e6 ? fmt::format("{:.3g}", value)
-                                                             : fmt::format("{:.0f}", value);
+    if (std::abs(value) < 99.95 || std::abs(value) >= 1e6) return fmt::format("{:.3g}", value);
+    const double last = std::pow(10, std::floor(std::log10(std::abs(value)) + 1e-12) - 2);
+    return fmt::format("{:.0f}", last * std::round(value / last));
 }
 
 StressUnit stress_unit(double largest) {
@@ -68,10 +89,14 @@ std::vector<SeriesStyle> styles_of(const std::vector<Setting>& settings) {
     for (const auto& setting : settings)
         if (const auto model = model_of(setting.replicas)) models.insert(*model);
     const bool by_model = models.size() == settings.size();
+    const std::size_t count = settings.size();
     std::vector<SeriesStyle> styles;
-    for (std::size_t s = 0; s < settings.size(); ++s)
+    for (std::size_t s = 0; s < count; ++s) {
         styles.push_back(
             style_number(by_model ? static_cast<std::size_t>(*model_of(settings[s].replicas)) : s));
+        if (!by_model && count > palette.size())
+            styles.back().colour = ramp_colour(static_cast<double>(s) / static_cast<double>(count - 1));
+    }
     return styles;
 }
 

@@ -41,11 +41,12 @@ struct SeriesStyle {
 /// Black circles, for the reference.
 SeriesStyle reference_style();
 
-/// Style of the first, second, .. series. The colours are suitable for colour-blind readers (Okabe and Ito).
+/// Style of the first, second, .. series.
 SeriesStyle style_number(std::size_t index);
 
 /// If every setting has a different contact model, a model has the same colour in all figures; otherwise
-/// colours follow the order of the settings.
+/// colours follow the order of the settings, with a gradual change if there are more than seven. They are
+/// suitable for colour-blind readers (Okabe and Ito; viridis).
 std::vector<SeriesStyle> styles_of(const std::vector<Setting>& settings);
 
 }  // namespace mcdem::report

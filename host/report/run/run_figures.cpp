@@ -85,32 +85,50 @@ struct ShownDensity {
     ForceDensity density;
 };
 
+double distance(const Level& level, const FigureOptions& options) {
+    return std::abs(level.displacement - options.distribution_displacement);
+}
+
 /// The level with contacts nearest to the displacement in this phase; null if there is none.
 const Level* nearest_level(const Series& series, const FigureOptions& options, Phase phase) {
     const Level* nearest = nullptr;
-    const auto distance = [&](const Level& level) {
-        return std::abs(level.displacement - options.distribution_displacement);
-    };
     for (const auto& level : series.levels) {
         bool known = false;
         for (const auto& scans : level.scans)
             for (const auto* scan : scans) known = known || !scan->contacts.empty();
-        if (level.phase == phase && known && (!nearest || distance(level) < distance(*nearest)))
+        if (level.phase == phase && known &&
+            (!nearest || distance(level, options) < distance(*nearest, options)))
             nearest = &level;
     }
     return nearest;
 }
 
-/// While unloading; while loading if unloading has no contacts, as in runs that stopped early.
-const Level* nearest_level(const Series& series, const FigureOptions& options) {
-    const Level* level = nearest_level(series, options, Phase::unload);
-    return level ? level : nearest_level(series, options, Phase::load);
+/// In this phase; in the other one if this one has no contacts, as unloading of runs that stopped early.
+const Level* nearest_level_if_any(const Series& series, const FigureOptions& options, Phase phase) {
+    const Level* level = nearest_level(series, options, phase);
+    return level ? level : nearest_level(series, options, phase == Phase::load ? Phase::unload : Phase::load);
+}
+
+/// Unloading, unless the first series was loaded nearer to the displacement, as at the turning point.
+Phase shown_phase(const Cast& cast, const FigureOptions& options) {
+    const Series* first = !cast.simulated.empty() ? &cast.simulated.front()
+                          : cast.reference        ? &*cast.reference
+                                                  : nullptr;
+    if (!first) return Phase::unload;
+    const Level *load = nearest_level(*first, options, Phase::load),
+                *unload = nearest_level(*first, options, Phase::unload);
+    constexpr double alike = 1e-6;  // [m]
+    const bool is_nearer = load && unload && distance(*load, options) < distance(*unload, options) - alike;
+    return is_nearer ? Phase::load : Phase::unload;
 }
 
 std::vector<ShownDensity> shown_levels(const Cast& cast, const FigureOptions& options) {
+    const Phase phase = shown_phase(cast, options);
     std::vector<ShownDensity> shown;
-    for (const auto& series : cast.simulated) shown.push_back({&series, nearest_level(series, options), {}});
-    if (cast.reference) shown.push_back({&*cast.reference, nearest_level(*cast.reference, options), {}});
+    for (const auto& series : cast.simulated)
+        shown.push_back({&series, nearest_level_if_any(series, options, phase), {}});
+    if (cast.reference)
+        shown.push_back({&*cast.reference, nearest_level_if_any(*cast.reference, options, phase), {}});
     std::erase_if(shown, [](const ShownDensity& s) { return !s.level; });
     return shown;
 }

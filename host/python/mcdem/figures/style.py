@@ -52,7 +52,7 @@ def plain(text):
 
 
 def key_columns(entries):
-    return 2 if max(len(words) for _, words in entries) < 30 else 1
+    return 2 if max(len(words) for _, words in entries) < 23 else 1  # 22 characters are about 30 mm wide
 
 
 def is_below(entries, place):

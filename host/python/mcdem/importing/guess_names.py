@@ -75,7 +75,7 @@ def _note_programs(mapped, columns):
 
 
 def guess_by_names(table):
-    mapped, columns = table.map, table.parts[0].columns
+    mapped, columns, repeated = table.map, table.parts[0].columns, table.parts[0].repeated
     mapped.role = role = _role_of(columns) or "unused"
     mapped.role_sure, mapped.role_why = ("sure", "its columns are named so") if role != "unused" else (
         UNCLEAR, "its columns say nothing that is known")
@@ -99,7 +99,10 @@ def guess_by_names(table):
             found.pop(key, None)
     for key, names in found.items():
         one = len(names) == 1 or key == "frame"  # "time" in addition to "frame" has the same meaning
-        mapped[key] = guess(names[0], "sure" if one else UNCLEAR, "its name" if one else f"{len(names)} columns have such a name")
+        if names[0] in repeated:
+            mapped[key] = guess(names[0], UNCLEAR, "several columns have this very name, and this is the first of them")
+        else:
+            mapped[key] = guess(names[0], "sure" if one else UNCLEAR, "its name" if one else f"{len(names)} columns have such a name")
     if "force" in mapped:
         _note_tangential(mapped, columns)
     note_units(mapped)

@@ -126,7 +126,9 @@ def guess_plate_by_values(table):
     named = {key: names for key, names in columns_by_key("plate", part.columns).items() if key in ("plate_z", "displacement", "top_force")}
     if named:
         mapped.role, mapped.role_sure = "plate", UNCLEAR
-        mapped.role_why = f"names say {' and '.join(named)}, but a plate needs its place and its force"
+        missing = "top_force" if "top_force" not in named else "plate_z or displacement"
+        others = [name for name in part.columns if name not in {names[0] for names in named.values()}]
+        mapped.role_why = f"no column is named as {missing}, which a plate's table must have; other columns: {', '.join(others) or 'none'}"
         mapped.entries.update({key: guess(names[0], UNCLEAR, "its name") for key, names in named.items()})
         return
     columns = _numbers_of(part, 9)

@@ -27,9 +27,11 @@ WORDS = {
         _FRAME,
         ("cycle", "cycle zyklus ncycle cyclenumber"),
         ("phase", "phase direction richtung loading"),
-        ("plate_z", "platez zplate plateheight height z gap plateposition position pos hoehe h platte top ztop topz lid piston"),
+        ("plate_z", "platez zplate plateheight height z gap plateposition position pos hoehe h platte top ztop topz lid piston "
+                    "pistonposition zpiston platenposition platen"),
         ("displacement", "displacement disp stroke travel weg hub verschiebung compression extension crosshead compressiveextension "
-                         "compressivedisplacement axialdisplacement standardtravel standardweg traverse traversenweg"),
+                         "compressivedisplacement axialdisplacement standardtravel standardweg traverse traversenweg "
+                         "crossheadposition crossheaddisplacement crossheadtravel"),
         ("set_force", "setforce fset forceset setpoint sollkraft targetforce"),
         ("top_force", "topforce force load f fz kraft last ftop forcez plateforce normalforce loadcell platefz fplate3 compressiveload "
                       "compressiveforce axialforce standardforce standardkraft"),

@@ -20,6 +20,7 @@ class Table:
         self.lines = []  # of the file, for cells that are not numbers and for messages
         self.decimal_clear = True  # otherwise every comma may also be a thousands separator: 1,306
         self.named, self.columns = False, []  # whether the file has names of columns; otherwise they are "column 1", ..
+        self.repeated = set()  # names that several columns have
         self.frames = []  # of a dump: (timestep, first row)
         self.line_of = []  # of each row, from 1; empty if rows are not lines
         self.rows, self._pending, self._chunks = 0, [], []
@@ -34,6 +35,8 @@ class Table:
         self.columns = []
         for i in range(count):
             name = names[i].strip(" \t\r") if i < len(names) else ""
+            if name in taken:
+                self.repeated.add(name)
             if not name or name[0] in "?-" or name in taken:
                 name = f"column {i + 1}"
             taken.add(name)
