@@ -133,6 +133,18 @@ TEST(DiagnosisText, a_group_lists_all_members_with_their_amplitudes) {
                   "these data cannot tell apart; adding the first of them takes away 64 %"));
 }
 
+TEST(DiagnosisText, data_that_are_too_few_to_name_an_effect_are_said_to_be) {
+    auto d = samples::diagnosis(Verdict::unknown_effect);
+    d.explanation = Explanation{.reduction = 0.92, .simulated = true, .placebo = 0.93, .needed = 1.03};
+    EXPECT_THAT(line(d, "Which"),
+                AllOf(StartsWith("these data cannot tell an effect from chance (18 effects were tested)"),
+                      HasSubstr("takes away 92 % of the gap"),
+                      HasSubstr("random effects (placebo) take away up to 93 %")));
+    EXPECT_THAT(verdict_sentence(d), StartsWith("There is a gap whose cause these data cannot tell"));
+    d.explanation->needed = 0.97;
+    EXPECT_THAT(verdict_sentence(d), StartsWith("There is a gap that no tested effect explains"));
+}
+
 TEST(DiagnosisText, unknown_effect_states_how_little_the_best_explains) {
     const auto d = samples::diagnosis(Verdict::unknown_effect);
     EXPECT_THAT(line(d, "Which"), AllOf(StartsWith("no tested effect explains it (18 effects were tested)"),

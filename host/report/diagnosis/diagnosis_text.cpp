@@ -17,12 +17,6 @@ constexpr std::size_t most_places = 2;  // of "where"
 constexpr std::size_t max_limits = 5;
 constexpr std::size_t max_remark_length = 160;
 
-std::vector<std::string> words_of_all(const std::vector<std::string>& names) {
-    std::vector<std::string> words;
-    for (const auto& name : names) words.push_back(words_of(name));
-    return words;
-}
-
 const Cause* leader_of(const Diagnosis& diagnosis) {
     if (!diagnosis.causes.empty()) return &diagnosis.causes.front();
     return diagnosis.ranking.empty() ? nullptr : &diagnosis.ranking.front();
@@ -176,7 +170,9 @@ std::string needed_words(const Explanation& explanation) {
 }
 
 std::string unknown_line(const Diagnosis& diagnosis) {
-    auto text = "no tested effect explains it (" + library_words(diagnosis) + ")";
+    auto text = (no_effect_can_be_named(diagnosis) ? "these data cannot tell an effect from chance ("
+                                                   : "no tested effect explains it (") +
+                library_words(diagnosis) + ")";
     if (const auto* best = leader_of(diagnosis); best && diagnosis.explanation)
         text += fmt::format("; the best one, {}{}, has a probability of {}: it {}{}", cause_words(*best),
                             together_with(diagnosis), percent(best->confidence), reduction_words(diagnosis),
@@ -284,7 +280,8 @@ std::vector<std::string> never_shown(const Diagnosis& diagnosis) {
 std::string no_gap_limits(const Diagnosis& diagnosis) {
     const auto limits = limits_that_matter(diagnosis);
     if (limits.empty()) return "smaller effects than these data can show may be there.";
-    return "smaller ones may be there: these data would show " + listed(limits, max_limits);
+    return "smaller ones may be there: in four of five cases these data would show " +
+           listed(limits, max_limits);
 }
 
 std::string limits_line(const Diagnosis& diagnosis) {
@@ -342,7 +339,8 @@ std::string verdict_headline(const Diagnosis& diagnosis) {
         case Verdict::group:
             return fmt::format("A gap; one of several effects {}", reduction_words(diagnosis));
         case Verdict::unknown_effect:
-            return "A gap that no tested effect explains";
+            return no_effect_can_be_named(diagnosis) ? "A gap whose cause these data cannot tell"
+                                                     : "A gap that no tested effect explains";
         case Verdict::not_converged:
             return "The simulation is not converged";
         case Verdict::calibration_suspect:
@@ -365,7 +363,10 @@ std::string verdict_sentence(const Diagnosis& diagnosis) {
                    (leader ? listed(words_of_all(leader->group)) : "several effects") +
                    ", which these data cannot tell apart" + taken_away(diagnosis) + ".";
         case Verdict::unknown_effect:
-            return "There is a gap that no tested effect explains (" + library_words(diagnosis) + ")" +
+            return fmt::format("There is a gap {} ({})",
+                               no_effect_can_be_named(diagnosis) ? "whose cause these data cannot tell"
+                                                                 : "that no tested effect explains",
+                               library_words(diagnosis)) +
                    (diagnosis.explanation ? "; the best one " + reduction_words(diagnosis) : "") + ".";
         case Verdict::not_converged:
             return fmt::format("The gap is consistent with a simulation that is not converged{}.",

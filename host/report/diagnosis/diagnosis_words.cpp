@@ -256,6 +256,16 @@ std::string suspect_words(const NuisanceFit& suspect) {
     return text;
 }
 
+std::vector<std::string> words_of_all(const std::vector<std::string>& names) {
+    std::vector<std::string> words;
+    for (const auto& name : names) words.push_back(words_of(name));
+    return words;
+}
+
+bool no_effect_can_be_named(const Diagnosis& diagnosis) {
+    return diagnosis.explanation && diagnosis.explanation->needed > 1;
+}
+
 std::string reduction_words(const Diagnosis& diagnosis) {
     if (!diagnosis.explanation) return "takes away the gap";
     const double reduction = diagnosis.explanation->reduction;

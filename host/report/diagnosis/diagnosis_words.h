@@ -72,6 +72,12 @@ std::vector<NuisanceFit> suspects_of(const Diagnosis& diagnosis);
 /// "modulus: 2.30 ± 0.20 kPa higher than stated (4.6 times its stated error)".
 std::string suspect_words(const NuisanceFit& suspect);
 
+std::vector<std::string> words_of_all(const std::vector<std::string>& names);
+
+/// Whether the data are so few that no reduction would suffice: random effects take away nearly all of the
+/// gap.
+bool no_effect_can_be_named(const Diagnosis& diagnosis);
+
 /// "takes away 97 % of the gap", "makes the gap 20 % larger": the reduction on which the verdict depends.
 std::string reduction_words(const Diagnosis& diagnosis);
 
