@@ -44,6 +44,19 @@ Found millimetres(double width, const Settings& settings) {
                     width, width / grains.diameter_max));
 }
 
+/// A plate that starts far above all grains, as if its height was given in millimetres.
+Found plate_in_millimetres(const Settings& settings) {
+    constexpr double too_high = 50;
+    const auto& replica = settings.replica;
+    const auto& generated = settings.generated;
+    const double height =
+        std::max(expected_height(generated, replica.box, mixture_of(replica)), generated.diameter_max);
+    return unless(is_cell(replica.box) || replica.plate.start <= too_high * height,
+                  fmt::format("must be in metres, got {}, {:.3g} times the height of the packing: divide by "
+                              "1000 if it is in millimetres",
+                              replica.plate.start, replica.plate.start / height));
+}
+
 /// Positions must be precise enough for overlaps of a thousandth of a radius.
 Found coarse_positions(const Settings& settings, double smallest_diameter) {
     if (settings.run.precision == Precision::double_precision) return {};
@@ -61,6 +74,7 @@ Found coarse_positions(const Settings& settings, double smallest_diameter) {
 
 // clang-format off
 const std::vector<Check> checks{
+    {{"plate.start", "packing.count", "packing.diameter_mean"}, Check::Packing::generated, plate_in_millimetres},
     {{"numerics.precision", "packing.diameter_min", "box.size_x", "box.size_y", "plate.start"}, Check::Packing::generated, [](const Settings& s) {
         return coarse_positions(s, s.generated.diameter_min);
     }},

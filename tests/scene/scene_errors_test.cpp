@@ -46,6 +46,13 @@ TEST(SceneErrors, ABoxInMillimetresIsDetected) {
                     "two.csv: the box must be in metres and fit the packing, 0.04 m wide, got 80 x 80 m")));
 }
 
+TEST(SceneErrors, APlateInMillimetresIsDetected) {
+    EXPECT_THAT(problems_in("[plate]\nstart = 156\nend = 126\n"),
+                testing::Contains(AllOf(HasSubstr("bad.toml:2: plate.start must be in metres, got 156"),
+                                        HasSubstr("divide by 1000 if it is in millimetres"))));
+    EXPECT_NO_THROW(parse_scene("[plate]\nstart = 0.5\n", "high.toml"));
+}
+
 TEST(SceneErrors, OfAllKindsAreReportedTogether) {
     const auto problems = problems_in(R"(speed = 3
 [grains]
