@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/errors.h"
@@ -155,6 +156,35 @@ SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Repli
     result.found = calibrate_gamma(top_forces, result.target.value, options.bracket, search);
     result.simulated = batch.last_top_force();
     return result;
+}
+
+std::string calibration_json(const SceneCalibration& result, ContactModel model, const Scene& scene,
+                             const std::string& reference, const std::string& program) {
+    nlohmann::json json;  // writes null for NaN
+    const std::string key = result.key();
+    const double unit = result.unit();
+    json["contact_model"] = name(model);
+    json[key] = unit * result.found.gamma;
+    json[key + "_standard_error"] = unit * result.standard_error();
+    json[key + "_standard_error_of_fit"] = unit * result.found.standard_error;
+    json["converged"] = result.found.converged;
+    json["runs_away_at_" + key] = unit * result.found.runs_away_at;
+    json["target_top_force_N"] = result.target.value;
+    json["target_standard_error_N"] = result.target.standard_error;
+    json["displacement_m"] = result.displacement;
+    json["replicas"] = result.replicas;
+    json["reference"] = reference;
+    json["scene"] = scene.text;
+    json["program"] = program;
+    for (const auto& round : result.found.rounds) {
+        std::vector<double> tried = round.gamma;
+        for (double& value : tried) value *= unit;
+        json["rounds"].push_back({{key, tried},
+                                  {"top_force_N", round.top_force},
+                                  {"estimate", unit * round.root},
+                                  {"standard_error", unit * round.standard_error}});
+    }
+    return json.dump(2) + "\n";
 }
 
 ContactModel calibrated_model(const std::string& model, const std::string& option) {

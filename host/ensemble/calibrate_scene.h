@@ -2,6 +2,7 @@
 // compression. For a model without gamma it finds the Young's modulus of the grains.
 #pragma once
 #include <functional>
+#include <string>
 
 #include "calibrate/calibrate_gamma.h"
 #include "cl/device.h"
@@ -44,6 +45,10 @@ struct SceneCalibration {
 /// mean is over the others. Throws InputError or RunError.
 SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Replicas& reference,
                                  const CalibrateOptions& options);
+
+/// The text of calibration.json. `reference`: label of its setting.
+std::string calibration_json(const SceneCalibration& result, ContactModel model, const Scene& scene,
+                             const std::string& reference, const std::string& program);
 
 /// The contact model to calibrate. Throws InputError, which names the `option` and all models.
 ContactModel calibrated_model(const std::string& model, const std::string& option);

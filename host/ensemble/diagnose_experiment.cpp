@@ -365,6 +365,9 @@ private:
 Diagnosis diagnose_experiment(Device& device, const Scene& scene, const std::vector<Experiment>& experiments,
                               const DiagnoseOptions& options) {
     expect_plate(scene, "a diagnosis");
+    if (scene.replicas.size() > 1)
+        options.on_note(fmt::format("the scene has {} replicas; the first one is diagnosed: {}",
+                                    scene.replicas.size(), scene.replicas.front().label));
     const auto begin = std::chrono::steady_clock::now();
     Diagnosis diagnosis = DiagnosisRunner(device, plan_of(scene, experiments, options), options).run();
     diagnosis.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/recording.h"
 
@@ -42,6 +43,11 @@ inline constexpr std::uintmax_t largest_table = std::uintmax_t{1} << 30;
 
 /// Throws InputError with all problems (at most 20), each as file:line and a remedy.
 Experiment read_experiment(const std::filesystem::path& folder, std::uintmax_t largest = largest_table);
+
+/// Packings of one experiment; several are named by their folders. Throws InputError, which names the
+/// `option`, if there is none or one is given twice.
+std::vector<Experiment> read_experiments(const std::vector<std::filesystem::path>& folders,
+                                         const std::string& option);
 
 enum class Packed { plain, gzip };
 

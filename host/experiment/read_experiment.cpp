@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -90,6 +93,18 @@ Experiment read_experiment(const fs::path& folder, std::uintmax_t largest) {
             recording.plate_start = std::fmax(recording.plate_start, scan.plate_z);
     average_contacts(recording, experiment.measurement.force_threshold);
     return experiment;
+}
+
+std::vector<Experiment> read_experiments(const std::vector<fs::path>& folders, const std::string& option) {
+    std::vector<Experiment> experiments;
+    for (const fs::path& folder : folders) {
+        if (std::ranges::count(folders, folder) > 1)
+            throw InputError(fmt::format("{}: {} is given twice", option, folder.string()));
+        experiments.push_back(read_experiment(folder));
+        if (folders.size() > 1) experiments.back().name = folder.string();
+    }
+    if (experiments.empty()) throw InputError(option + ": must name one folder or more, got none");
+    return experiments;
 }
 
 void expect_readable(const fs::path& folder, const std::map<std::string, std::string>& texts) {

@@ -3,6 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "core/errors.h"
+#include "core/version.h"
 #include "ensemble/calibrate_scene.h"
 #include "ensemble/reference.h"
 #include "io/export_run.h"
@@ -58,9 +59,9 @@ py::list compare_run(const SharedRun& run, const py::object& reference, const st
     return all;
 }
 
-py::dict calibrate(const Scene& scene, const py::object& reference, const std::string& setting, int discard,
-                   double low, double high, double tolerance, int batch, int rounds, const std::string& model,
-                   const std::string& choice, py::object progress) {
+py::object calibrate(const Scene& scene, const py::object& reference, const std::string& setting, int discard,
+                     double low, double high, double tolerance, int batch, int rounds,
+                     const std::string& model, const std::string& choice, py::object progress) {
     const SharedRun other = reference_of(reference, discard, ReadWhat::observables);
     Watch watch(std::move(progress));
     CalibrateOptions options{
@@ -69,26 +70,17 @@ py::dict calibrate(const Scene& scene, const py::object& reference, const std::s
         watch.show_progress((round + part) / rounds);
         if (watch.stop_wanted()) throw Interrupted();
     };
-    SceneCalibration result;
+    std::string text;
     try {
         const py::gil_scoped_release others_go_on;
         Device device(choice);
-        result = calibrate_scene(device, scene,
-                                 chosen_setting(*other, setting, other->name, "setting").replicas, options);
+        const Setting chosen = chosen_setting(*other, setting, other->name, "setting");
+        text = calibration_json(calibrate_scene(device, scene, chosen.replicas, options), options.model,
+                                scene, chosen.label, version_text);
     } catch (const Interrupted&) {
     }
     watch.raise();
-    const std::string key = result.key();
-    const double unit = result.unit();
-    py::dict found(py::arg("contact_model") = model, py::arg("converged") = result.found.converged,
-                   py::arg("target_top_force_N") = value(result.target.value),
-                   py::arg("target_standard_error_N") = value(result.target.standard_error),
-                   py::arg("displacement_m") = value(result.displacement),
-                   py::arg("replicas") = result.replicas);
-    found[py::str(key)] = value(unit * result.found.gamma);
-    found[py::str(key + "_standard_error")] = value(unit * result.standard_error());
-    found[py::str("runs_away_at_" + key)] = value(unit * result.found.runs_away_at);
-    return found;
+    return py::module_::import("json").attr("loads")(text);
 }
 
 int export_files(const std::filesystem::path& path, const std::filesystem::path& folder, bool vtk, bool xyz,

@@ -45,22 +45,12 @@ void check(const Numbers& numbers) {
 using Path = std::filesystem::path;
 using OneOrSeveral = std::variant<Path, std::vector<Path>>;
 
-/// Several packings are named by their folders.
-std::vector<Experiment> read_experiments(const OneOrSeveral& folders) {
-    if (const Path* one = std::get_if<Path>(&folders)) return {read_experiment(*one)};
-    std::vector<Experiment> experiments;
-    for (const Path& folder : std::get<std::vector<Path>>(folders)) {
-        experiments.push_back(read_experiment(folder));
-        experiments.back().name = folder.string();
-    }
-    if (experiments.empty()) throw InputError("experiment: must be a folder or a list of some, got none");
-    return experiments;
-}
-
 /// The text of diagnosis.json, which is written to the folder with the simulations and the page.
 std::string diagnose_into(const Scene& scene, const Path& folder, const DiagnoseOptions& options,
                           const OneOrSeveral& experiment, const std::string& choice, bool page) {
-    const std::vector<Experiment> measured = read_experiments(experiment);
+    const Path* one = std::get_if<Path>(&experiment);
+    const std::vector<Experiment> measured =
+        read_experiments(one ? std::vector{*one} : std::get<std::vector<Path>>(experiment), "experiment");
     const FolderLock lock = open_output_folder(folder);
     Device device(choice);
     const Diagnosis diagnosis = diagnose_experiment(device, scene, measured, options);
@@ -89,9 +79,6 @@ py::object diagnose(const Scene& scene, const OneOrSeveral& experiment, const Pa
     options.on_progress = [&](const std::string& stage, double part) { watch.show_progress(stage, part); };
     options.on_note = [&](const std::string& note) { watch.warn(note); };
     options.stop_wanted = [&] { return watch.stop_wanted(); };
-    if (scene.replicas.size() > 1)
-        watch.warn(fmt::format("the scene has {} replicas; the first one is diagnosed: {}",
-                               scene.replicas.size(), scene.replicas.front().label));
     std::string text;
     try {
         const py::gil_scoped_release others_go_on;

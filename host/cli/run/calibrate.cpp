@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/run/results.h"
 #include "cli/run/scene_options.h"
 #include "cli/shell/commands.h"
@@ -9,7 +7,6 @@
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
 #include "core/errors.h"
-#include "core/names.h"
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/calibrate_scene.h"
@@ -25,36 +22,6 @@ struct CalibrateCommand {
     std::string out, device;
     CalibrateOptions options;
 };
-
-/// The library writes null for NaN.
-nlohmann::json json_of(const SceneCalibration& result, ContactModel model, const Scene& scene,
-                       const LoadedReference& reference) {
-    nlohmann::json json;
-    const std::string key = result.key();
-    const double unit = result.unit();
-    json["contact_model"] = name(model);
-    json[key] = unit * result.found.gamma;
-    json[key + "_standard_error"] = unit * result.standard_error();
-    json[key + "_standard_error_of_fit"] = unit * result.found.standard_error;
-    json["converged"] = result.found.converged;
-    json["runs_away_at_" + key] = unit * result.found.runs_away_at;
-    json["target_top_force_N"] = result.target.value;
-    json["target_standard_error_N"] = result.target.standard_error;
-    json["displacement_m"] = result.displacement;
-    json["replicas"] = result.replicas;
-    json["reference"] = reference.setting.label;
-    json["scene"] = scene.text;
-    json["program"] = version_text;
-    for (const auto& round : result.found.rounds) {
-        std::vector<double> tried = round.gamma;
-        for (double& value : tried) value *= unit;
-        json["rounds"].push_back({{key, tried},
-                                  {"top_force_N", round.top_force},
-                                  {"estimate", unit * round.root},
-                                  {"standard_error", unit * round.standard_error}});
-    }
-    return json;
-}
 
 void print_calibration(const SceneCalibration& result) {
     TextTable table;
@@ -105,8 +72,9 @@ void calibrate(CalibrateCommand& command) {
     }
     print_calibration(result);
     if (command.out.empty()) return;
-    replace_own(file, FileKind::calibration,
-                json_of(result, command.options.model, scene, reference).dump(2) + "\n");
+    replace_own(
+        file, FileKind::calibration,
+        calibration_json(result, command.options.model, scene, reference.setting.label, version_text));
     print_out("wrote {}\n", file.string());
 }
 

@@ -10,7 +10,6 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
-#include "core/errors.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/version.h"
@@ -57,27 +56,12 @@ void warn_of_odd_data(const Experiment& experiment) {
                      odd.front(), odd.size() > 1 ? fmt::format("; and {} more", odd.size() - 1) : "");
 }
 
-/// Several packings are named by their folders.
-std::vector<Experiment> read_experiments(const std::vector<std::string>& folders) {
-    std::vector<Experiment> experiments;
-    for (const std::string& folder : folders) {
-        if (std::ranges::count(folders, folder) > 1)
-            throw InputError(fmt::format("--experiment: {} is given twice", folder));
-        experiments.push_back(read_experiment(folder));
-        if (folders.size() > 1) experiments.back().name = folder;
-    }
-    return experiments;
-}
-
 Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene,
                    const std::vector<Experiment>& experiments) {
     Device device(command.device);
     std::vector<std::string> names;
     for (const Experiment& experiment : experiments) names.push_back(experiment.name);
     spdlog::info("{} against {} on {}", scene.name, fmt::join(names, ", "), device.info().name);
-    if (scene.replicas.size() > 1)
-        spdlog::warn("the scene has {} replicas; the first one is diagnosed: {}", scene.replicas.size(),
-                     scene.replicas.front().label);
     std::ranges::for_each(experiments, warn_of_odd_data);
     const Interrupt interrupt;
     StageProgress stages;
@@ -125,7 +109,8 @@ std::vector<std::string> words_of(const DiagnoseCommand& command) {
 
 int run(DiagnoseCommand& command) {
     const Scene scene = command.scene.read();
-    const std::vector<Experiment> experiments = read_experiments(command.experiments);
+    const std::vector<Experiment> experiments =
+        read_experiments({command.experiments.begin(), command.experiments.end()}, "--experiment");
     if (!is_shared(command.sharing, command.device)) return run_alone(command, scene, experiments);
     const DiagnoseOptions options = options_of(command);
     SharedWork work;
