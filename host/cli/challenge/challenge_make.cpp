@@ -1,4 +1,5 @@
 #include "challenge/make.h"
+#include "cli/experiment/experiment.h"
 #include "cli/run/scene_options.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"
@@ -33,7 +34,7 @@ void make(MakeCommand& command) {
 
 void add_sizes(CLI::App& sub, ChallengeSize& size) {
     const auto add = [&](const char* option, int& value, const char* help) {
-        sub.add_option(option, value, help)->capture_default_str()->type_name("N");
+        sub.add_option(option, value, help)->type_name("N");
     };
     add("--none", size.none, "Number of experiments without an effect");
     add("--per-effect", size.per_effect, "Number of experiments with each effect of the library");
@@ -42,17 +43,6 @@ void add_sizes(CLI::App& sub, ChallengeSize& size) {
     add("--outside", size.outside_prior,
         "Number of experiments with modulus or strain zero far outside their uncertainty");
     add("--packings", size.packings, "Number of different packings; even");
-}
-
-void add_measurement(CLI::App& sub, Measurement& measurement) {
-    measurement = {1e-4, 2e-5, 0.05, 0.004};
-    const auto add = [&](const char* option, double& value, const char* help) {
-        sub.add_option(option, value, help)->capture_default_str()->check(CLI::NonNegativeNumber);
-    };
-    add("--position-error", measurement.position_error, "Standard error of measured coordinates [m]");
-    add("--diameter-error", measurement.diameter_error, "Standard error of measured diameters [m]");
-    add("--force-error", measurement.force_error, "Relative standard error of measured contact forces");
-    add("--force-threshold", measurement.force_threshold, "Contact forces below this are not measured [N]");
 }
 
 }  // namespace
@@ -72,7 +62,8 @@ void add_challenge_make(CLI::App& challenge, int&) {
         ->delimiter(',')
         ->type_name("NAME,..");
     add_sizes(*sub, command->options.size);
-    add_measurement(*sub, command->options.measurement);
+    command->options.measurement = {1e-4, 2e-5, 0.05, 0.004};
+    add_measurement_options(*sub, command->options.measurement);
     add_device_option(*sub, command->device);
     sub->footer(
         "The same command continues where an interrupted one stopped.\n"

@@ -3,6 +3,7 @@
 
 #include "challenge/run.h"
 #include "cli/parts/sharing.h"
+#include "cli/run/scene_options.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"
 #include "cli/shell/messages.h"
@@ -11,14 +12,13 @@
 #include "core/atomic_file.h"
 #include "core/version.h"
 #include "report/diagnosis/diagnosis_json.h"
-#include "scene/read_scene.h"
 
 namespace mcdem::inline cli {
 namespace {
 
 struct RunChallengeCommand {
-    std::string challenge, scene, library, out, device;
-    std::vector<std::string> overrides;
+    SceneOptions scene;
+    std::string challenge, library, out, device;
     ChallengeRunOptions options;
     SharingOptions sharing;
 };
@@ -26,8 +26,8 @@ struct RunChallengeCommand {
 /// The command line without options that determine where and how it runs.
 std::vector<std::string> words_of(const RunChallengeCommand& command) {
     const ChallengeRunOptions& options = command.options;
-    std::vector<std::string> words{"challenge", "run", command.challenge, "--scene", command.scene};
-    for (const auto& setting : command.overrides) words.insert(words.end(), {"--set", setting});
+    std::vector<std::string> words{"challenge", "run", command.challenge, "--scene", command.scene.file};
+    for (const auto& setting : command.scene.overrides) words.insert(words.end(), {"--set", setting});
     const auto add = [&](const char* option, const std::string& value) {
         words.insert(words.end(), {option, value});
     };
@@ -86,7 +86,7 @@ SharedWork shared_work(const RunChallengeCommand& command, const Scene& scene) {
 }
 
 int run(RunChallengeCommand& command) {
-    const Scene scene = read_scene(command.scene, command.overrides);
+    const Scene scene = command.scene.read();
     fill_in(command);
     if (is_shared(command.sharing, command.device))
         return share(shared_work(command, scene), command.sharing, command.device);
@@ -95,7 +95,7 @@ int run(RunChallengeCommand& command) {
 
 void add_numbers(CLI::App& sub, ChallengeRunOptions& options) {
     const auto add = [&](const char* option, int& value, const char* help) {
-        sub.add_option(option, value, help)->capture_default_str()->type_name("N");
+        sub.add_option(option, value, help)->type_name("N");
     };
     add("--replicates", options.replicates,
         "Number of simulations of each experiment with the unchanged scene");
@@ -107,8 +107,7 @@ void add_numbers(CLI::App& sub, ChallengeRunOptions& options) {
     sub.add_option("--candidates", options.library.candidates, "Effects of a new library; default: all")
         ->delimiter(',')
         ->type_name("NAME,..");
-    sub.add_option("--seed", options.seed, "Seed of all random numbers of the diagnoses")
-        ->capture_default_str();
+    sub.add_option("--seed", options.seed, "Seed of all random numbers of the diagnoses");
 }
 
 }  // namespace
@@ -117,10 +116,7 @@ void add_challenge_run(CLI::App& challenge, int& exit_code) {
     auto* sub = challenge.add_subcommand("run", "Diagnose every experiment of a challenge");
     auto command = std::make_shared<RunChallengeCommand>();
     sub->add_option("CHALLENGE", command->challenge, "Folder of the challenge")->required();
-    sub->add_option("--scene", command->scene, "Scene that the challenge was made with")->required();
-    sub->add_option("--set", command->overrides, "Override a scene key; may be repeated")
-        ->type_name("KEY=VALUE")
-        ->allow_extra_args(false);
+    add_scene_options(*sub, command->scene, "--scene", "Scene that the challenge was made with");
     sub->add_option(
            "--library", command->library,
            "File with the simulated changes by each effect; computed and written if it does not exist")

@@ -197,21 +197,12 @@ void make_experiment(const FromRunCommand& command) {
               experiment.recording.scans.size(), experiment.recording.diameter.size(), seen, real);
 }
 
-void add_instrument_options(CLI::App& sub, Instrument& instrument) {
+void add_unstated_errors(CLI::App& sub, Instrument& instrument) {
     const auto add = [&](const std::string& name, double& value, const std::string& unit,
                          const std::string& help, const CLI::Validator& check) {
-        sub.add_option(name, value, help)->type_name(unit)->capture_default_str()->check(check);
+        sub.add_option(name, value, help)->type_name(unit)->check(check);
     };
-    const CLI::Range relative(0.0, 1.0), bias(-0.5, 0.5);
-    Measurement& stated = instrument.stated;
-    add("--position-error", stated.position_error, "M", "Standard error of each coordinate of a centre [m]",
-        CLI::NonNegativeNumber);
-    add("--diameter-error", stated.diameter_error, "M", "Standard error of a diameter [m]",
-        CLI::NonNegativeNumber);
-    add("--force-error", stated.force_error, "FRACTION", "Relative standard error of a contact force",
-        relative);
-    add("--force-threshold", stated.force_threshold, "N", "Contacts below this force are not measured [N]",
-        CLI::NonNegativeNumber);
+    const CLI::Range bias(-0.5, 0.5);
     add("--force-bias", instrument.force_bias, "FRACTION",
         "Unstated error: contact forces are measured too large by this fraction", bias);
     add("--threshold-shift", instrument.threshold_shift, "N",
@@ -247,6 +238,20 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
 
 }  // namespace
 
+void add_measurement_options(CLI::App& command, Measurement& measurement) {
+    const auto add = [&](const char* option, double& value, const char* unit, const char* help,
+                         const CLI::Validator& check = CLI::NonNegativeNumber) {
+        command.add_option(option, value, help)->type_name(unit)->check(check);
+    };
+    add("--position-error", measurement.position_error, "M",
+        "Standard error of each coordinate of a centre [m]");
+    add("--diameter-error", measurement.diameter_error, "M", "Standard error of a diameter [m]");
+    add("--force-error", measurement.force_error, "FRACTION", "Relative standard error of a contact force",
+        CLI::Range(0.0, 1.0));
+    add("--force-threshold", measurement.force_threshold, "N",
+        "Contacts below this force are not measured [N]");
+}
+
 void add_experiment_from_run(CLI::App& experiment) {
     auto* sub =
         experiment.add_subcommand("from-run", "Write a simulation as an experiment with measurement errors");
@@ -259,12 +264,13 @@ void add_experiment_from_run(CLI::App& experiment) {
     sub->add_option("--name", command->name,
                     "Name of the experiment (default: that of the run and the replica)")
         ->type_name("TEXT");
-    add_instrument_options(*sub, command->instrument);
+    add_measurement_options(*sub, command->instrument.stated);
+    add_unstated_errors(*sub, command->instrument);
     sub->add_option("--uncertainty", command->uncertainty,
                     "Stated standard error of a material parameter, such as grains.youngs_modulus=500")
         ->type_name("KEY=SIGMA")
         ->allow_extra_args(false);
-    sub->add_option("--seed", command->seed, "Seed of the noise")->capture_default_str();
+    sub->add_option("--seed", command->seed, "Seed of the noise");
     sub->add_flag("--gzip", command->gzip, "Compress the tables with gzip");
     sub->footer(
         "Materials are stated as in the run; its effects are not. Unstated errors act on the data but are "

@@ -31,8 +31,7 @@ void add_distribute(CLI::App& app, int& exit_code) {
                     "machine with one worker per device")
         ->type_name("ADDRESS");
     sub->add_option("--tries", command->tries, "Number of attempts for a part that fails")
-        ->check(CLI::Range(1, 100))
-        ->capture_default_str();
+        ->check(CLI::Range(1, 100));
     sub->prefix_command();
     sub->footer(
         "COMMAND is `run`, `challenge run` or `diagnose`, with its options. Its parts become Dask tasks: "

@@ -345,7 +345,6 @@ void add_sharing_options(CLI::App& command, SharingOptions& options, std::string
          {command
               .add_option("--slurm-tasks", options.slurm_tasks,
                           "Number of array tasks that run at the same time")
-              ->capture_default_str()
               ->check(CLI::Range(1, 100'000))
               ->type_name("N"),
           command.add_option("--slurm-partition", options.slurm_partition, "Slurm partition")
@@ -370,7 +369,7 @@ int share(const SharedWork& work, const SharingOptions& options, const std::stri
     const bool on_all = device == all_devices && !options.slurm;
     const std::vector<int> devices = on_all ? alike_devices("") : std::vector<int>{};
     const std::size_t known = options.slurm ? static_cast<std::size_t>(options.slurm_tasks) : devices.size();
-    auto parts = work.begin(options.workers > 0 ? options.workers : known);
+    auto parts = work.begin(options.workers.value_or(known));
     if (options.missing) {
         for (const std::size_t part : parts->missing()) print_out("{}\n", part);
         return exit_done;

@@ -14,9 +14,8 @@
 namespace mcdem::inline cli {
 
 struct SharingOptions {
-    std::optional<std::size_t> part;
+    std::optional<std::size_t> part, workers;
     bool missing = false, merge = false, mpi = false, slurm = false, no_wait = false;
-    std::size_t workers = 0;  ///< 0: not specified
     int slurm_tasks = 4;
     std::string slurm_partition, slurm_time;
     std::string slurm_lines;  ///< file with lines for the job script

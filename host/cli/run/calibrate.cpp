@@ -80,18 +80,14 @@ void calibrate(CalibrateCommand& command) {
 
 void add_search_options(CLI::App& sub, CalibrateOptions& options) {
     sub.add_option("--low", options.bracket.low,
-                   "Lower end of the search: gamma, or E divided by the scene's E")
-        ->capture_default_str();
+                   "Lower end of the search: gamma, or E divided by the scene's E");
     sub.add_option("--high", options.bracket.high,
-                   "Upper end of the search: gamma, or E divided by the scene's E")
-        ->capture_default_str();
+                   "Upper end of the search: gamma, or E divided by the scene's E");
     sub.add_option("--tolerance", options.search.tolerance,
-                   "Stop at this standard error of gamma, or of E divided by the scene's E")
-        ->capture_default_str();
+                   "Stop at this standard error of gamma, or of E divided by the scene's E");
     sub.add_option("--batch", options.search.batch,
-                   "Number of values that are simulated together in one round")
-        ->capture_default_str();
-    sub.add_option("--rounds", options.search.rounds, "Maximum number of rounds")->capture_default_str();
+                   "Number of values that are simulated together in one round");
+    sub.add_option("--rounds", options.search.rounds, "Maximum number of rounds");
 }
 
 }  // namespace

@@ -68,21 +68,17 @@ void add_converge(CLI::App& app, int&) {
         ->type_name("DIR");
     sub->add_option("--replicas", command->options.replicas,
                     "Number of jittered copies of the packing; comparisons are paired")
-        ->check(CLI::Range(8, 10000))
-        ->capture_default_str();
+        ->check(CLI::Range(8, 10000));
     sub->add_option("--jitter", command->options.jitter,
                     "Standard deviation of the jitter [m]; 0: half a per cent of a diameter")
-        ->check(CLI::Range(0.0, 1.0))
-        ->capture_default_str();
+        ->check(CLI::Range(0.0, 1.0));
     sub->add_option("--force-limit", command->options.limits.force,
                     "Largest relative error allowed in forces")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
+        ->check(CLI::PositiveNumber);
     sub->add_option("--sd-limit", command->options.limits.deviations,
                     "Largest error allowed in other observables, in standard deviations over the copies")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    sub->add_option("--seed", command->options.seed, "Seed of the jitter")->capture_default_str();
+        ->check(CLI::PositiveNumber);
+    sub->add_option("--seed", command->options.seed, "Seed of the jitter");
     add_device_option(*sub, command->device);
     sub->footer(
         "Runs the scene as it stands and with finer numerics, all from the same jittered packings: the plate "

@@ -149,24 +149,20 @@ void add_diagnose(CLI::App& app, int& exit_code) {
         ->type_name("A,B,..");
     sub->add_option("--replicates", command->replicates,
                     "Number of runs of the unchanged scene; their scatter is the noise floor")
-        ->check(CLI::Range(8, 10000))
-        ->capture_default_str();
+        ->check(CLI::Range(8, 10000));
     sub->add_option("--pairs", command->pairs,
                     "Number of runs of each effect at each of its two amplitudes; at most --replicates")
-        ->check(CLI::Range(2, 10000))
-        ->capture_default_str();
+        ->check(CLI::Range(2, 10000));
     sub->add_option("--confirmations", command->confirmations,
                     "Number of runs that confirm each proposed effect at its fitted amplitude; 0: none")
-        ->check(CLI::Range(0, 10000))
-        ->capture_default_str();
+        ->check(CLI::Range(0, 10000));
     sub->add_option(
            "--refine", command->refine,
            "If the scene is not converged: largest factor by which plate.speed, grains.density or "
            "numerics.time_step is lowered before the diagnosis is repeated (runs take up to that much "
            "longer); 1: never, and pauses of the experiment's plate are not simulated")
-        ->check(CLI::Range(1.0, 64.0))
-        ->capture_default_str();
-    sub->add_option("--seed", command->seed, "Seed of all random numbers")->capture_default_str();
+        ->check(CLI::Range(1.0, 64.0));
+    sub->add_option("--seed", command->seed, "Seed of all random numbers");
     sub->add_option("--library", command->library,
                     "File with the simulated changes by each effect, for use with further experiments; read "
                     "if it exists, otherwise computed and written")

@@ -81,14 +81,12 @@ void add_figure_options(CLI::App& command, FigureOptions& figures) {
     command
         .add_option("--displacement", figures.distribution_displacement,
                     "Draw the force distribution at the recorded plate displacement nearest to this one [m]")
-        ->type_name("M")
-        ->capture_default_str();
+        ->type_name("M");
     command
         .add_option("--threshold", figures.threshold,
                     "Contact force below which contacts are not counted in the figure of Z if there is "
                     "no reference [N]")
-        ->type_name("N")
-        ->capture_default_str();
+        ->type_name("N");
 }
 
 }  // namespace mcdem::cli

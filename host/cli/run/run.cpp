@@ -200,8 +200,9 @@ void add_run(CLI::App& app, int& exit_code) {
     sub->add_flag("--resume", command->resume, "Continue the interrupted run in DIR");
     sub->add_flag("--no-figures", command->no_figures, "Do not draw figures at the end");
     add_sharing_options(*sub, command->sharing, command->device);
-    sub->add_option("--part-replicas", command->cut.part_replicas,
-                    "Replicas per part; default: enough to fill a device, but at least two parts per process")
+    sub->add_option_function<std::size_t>(
+           "--part-replicas", [command](std::size_t replicas) { command->cut.part_replicas = replicas; },
+           "Replicas per part; default: enough to fill a device, but at least two parts per process")
         ->check(CLI::Range(1, 10'000))
         ->type_name("N")
         ->group("Many devices and nodes");

@@ -8,9 +8,8 @@ namespace mcdem::inline cli {
 
 Scene SceneOptions::read() const { return read_scene(file, overrides); }
 
-void add_scene_options(CLI::App& command, SceneOptions& options) {
-    command.add_option("SCENE", options.file, "Scene file (TOML; scenes/README.md explains every key)")
-        ->required();
+void add_scene_options(CLI::App& command, SceneOptions& options, const char* name, const char* help) {
+    command.add_option(name, options.file, help)->required();
     command.add_option("--set", options.overrides, "Override a scene key; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);

@@ -57,18 +57,19 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     return exit_bad_input;
 }
 
-/// Refuses empty paths, which would mean the current folder, or fail only after the work.
-void expect_places(CLI::App& app) {
-    const auto is_place = [](const CLI::Option* option) {
+/// Shows default values in the help. Refuses empty paths, which would mean the current folder, or fail only
+/// after the work.
+void finish_options(CLI::App& app) {
+    for (CLI::Option* option : app.get_options()) {
+        if (option->get_items_expected_max() == 1) option->capture_default_str();
         const std::string name = option->get_single_name();
-        return name == "out" || name == "library" || name == "truth";
-    };
-    for (CLI::Option* option : app.get_options(is_place))
-        option->check([](const std::string& place) {
-            return place.empty() ? std::string("must name a place, got nothing") : std::string();
-        });
+        if (name == "out" || name == "library" || name == "truth")
+            option->check([](const std::string& place) {
+                return place.empty() ? std::string("must name a place, got nothing") : std::string();
+            });
+    }
     for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-        expect_places(*command);
+        finish_options(*command);
 }
 
 int command_line(int argc, const char* const* argv) {
@@ -81,7 +82,7 @@ int command_line(int argc, const char* const* argv) {
                            add_compare, add_figures, add_report, add_calibrate, add_converge, add_export,
                            add_experiment, add_diagnose, add_challenge, add_completion, add_manual})
         add(app, exit_code);
-    expect_places(app);
+    finish_options(app);
     try {
         app.parse(argc, argv);
         return exit_code;
