@@ -47,7 +47,7 @@ TEST_F(VanishingDeviceTest, TheRunReportsItKeepsItsScansAndResumes) {
         ++vanished;
         EXPECT_EQ(finished.exit_code, 1) << finished.err;
         EXPECT_THAT(finished.err, HasSubstr("the device or its driver has failed"));
-        EXPECT_THAT(finished.err, HasSubstr("--out a --resume"));
+        EXPECT_THAT(finished.err, HasSubstr("--out a --no-figures --resume"));
     }
     expect_done(finished);
     EXPECT_GE(vanished, 2);

@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "challenge/run.h"
 #include "cli/parts/sharing.h"
 #include "cli/run/scene_options.h"
@@ -22,27 +19,6 @@ struct RunChallengeCommand {
     ChallengeRunOptions options;
     SharingOptions sharing;
 };
-
-/// The command line without options that determine where and how it runs.
-std::vector<std::string> words_of(const RunChallengeCommand& command) {
-    const ChallengeRunOptions& options = command.options;
-    std::vector<std::string> words{"challenge", "run", command.challenge, "--scene", command.scene.file};
-    for (const auto& setting : command.scene.overrides) words.insert(words.end(), {"--set", setting});
-    const auto add = [&](const char* option, const std::string& value) {
-        words.insert(words.end(), {option, value});
-    };
-    add("--library", command.library);
-    add("--out", command.out);
-    add("--replicates", std::to_string(options.replicates));
-    add("--confirmations", std::to_string(options.confirmations));
-    add("--library-packings", std::to_string(options.library.packings));
-    add("--library-replicates", std::to_string(options.library.replicates));
-    add("--library-pairs", std::to_string(options.library.pairs));
-    if (!options.library.candidates.empty())
-        add("--candidates", fmt::format("{}", fmt::join(options.library.candidates, ",")));
-    add("--seed", std::to_string(options.seed));
-    return words;
-}
 
 void fill_in(RunChallengeCommand& command) {
     ChallengeRunOptions& options = command.options;
@@ -78,7 +54,6 @@ int run_alone(RunChallengeCommand& command, const Scene& scene) {
 
 SharedWork shared_work(const RunChallengeCommand& command, const Scene& scene) {
     SharedWork work;
-    work.words = words_of(command);
     work.out = command.out;
     work.begin = [&](std::size_t) { return challenge_parts(scene, command.options); };
     work.report = [&] { return report(command); };

@@ -90,9 +90,9 @@ int compute_here(const SharedWork& work, PartedWork& parts, const std::string& d
     return failed(work, error);
 }
 
-std::vector<std::string> part_words(const SharedWork& work) {
-    std::vector<std::string> words{this_program().string()};
-    words.insert(words.end(), work.words.begin(), work.words.end());
+std::vector<std::string> part_words(const SharingOptions& options) {
+    std::vector<std::string> words = words_of(options);
+    words.insert(words.begin(), this_program().string());
     return words;
 }
 
@@ -186,14 +186,15 @@ private:
     int code_ = exit_done;
 };
 
-int compute_on_all_devices(const SharedWork& work, PartedWork& parts, const std::vector<int>& devices) {
+int compute_on_all_devices(const SharedWork& work, PartedWork& parts, const SharingOptions& options,
+                           const std::vector<int>& devices) {
     for (const DeviceInfo& info : list_devices())
         if (std::ranges::find(devices, info.index) == devices.end())
             spdlog::info("device {}, {}, is left out: its bits are not those of device {}", info.index,
                          info.name, devices.front());
     if (devices.size() == 1) return compute_here(work, parts, std::to_string(devices.front()));
     spdlog::info("{} devices, a process on each", devices.size());
-    const std::vector<std::string> words = part_words(work);
+    const std::vector<std::string> words = part_words(options);
     std::vector<int> left_devices = devices;
     return until_merged(work, parts, [&](const Numbers& left) {
         const int code = Dealing(words, left, left_devices).all();
@@ -257,7 +258,7 @@ int compute_by_slurm(const SharedWork& work, PartedWork& parts, const SharingOpt
                      const std::string& device) {
     SlurmJob job;
     job.folder = work.out / "slurm";
-    job.words = part_words(work);
+    job.words = part_words(options);
     if (!device.empty() && device != all_devices) job.words.insert(job.words.end(), {"--device", device});
     job.tasks = options.slurm_tasks;
     job.partition = options.slurm_partition;
@@ -300,7 +301,7 @@ int compute_and_merge(const SharedWork& work, PartedWork& parts, const SharingOp
     if (options.part) return compute_one(parts, *options.part, choice_of(device));
     if (options.merge) return merge_only(work, parts);
     if (options.slurm) return compute_by_slurm(work, parts, options, device);
-    if (!devices.empty()) return compute_on_all_devices(work, parts, devices);
+    if (!devices.empty()) return compute_on_all_devices(work, parts, options, devices);
     return compute_here(work, parts, device);
 } catch (const Interrupted&) {
     return interrupted(work);
@@ -309,6 +310,7 @@ int compute_and_merge(const SharedWork& work, PartedWork& parts, const SharingOp
 }  // namespace
 
 void add_part_options(CLI::App& command, SharingOptions& options, std::string& device) {
+    options.command = &command;
     command
         .add_option(
             "--device", device,
@@ -357,6 +359,21 @@ void add_sharing_options(CLI::App& command, SharingOptions& options, std::string
               ->type_name("FILE"),
           command.add_flag("--no-wait", options.no_wait, "Submit the job and return at once")})
         option->needs(slurm)->group(group);
+}
+
+std::vector<std::string> words_of(const SharingOptions& options) {
+    std::vector<std::string> words;
+    for (const CLI::App* app = options.command; app->get_parent(); app = app->get_parent())
+        words.insert(words.begin(), app->get_name());
+    for (const CLI::Option* option : options.command->get_options()) {
+        const std::string name = option->get_name();
+        if (option->get_group() == group || name == "--device" || name == "--resume") continue;
+        for (const std::string& value : option->results()) {
+            if (!option->get_positional()) words.push_back(name);
+            if (option->get_items_expected_max() > 0) words.push_back(value);
+        }
+    }
+    return words;
 }
 
 bool is_shared(const SharingOptions& options, const std::string& device) {

@@ -14,6 +14,7 @@
 namespace mcdem::inline cli {
 
 struct SharingOptions {
+    const CLI::App* command = nullptr;  ///< to which they were added
     std::optional<std::size_t> part, workers;
     bool missing = false, merge = false, mpi = false, slurm = false, no_wait = false;
     int slurm_tasks = 4;
@@ -27,12 +28,14 @@ void add_part_options(CLI::App& command, SharingOptions& options, std::string& d
 /// The same, plus the options of MPI and Slurm.
 void add_sharing_options(CLI::App& command, SharingOptions& options, std::string& device);
 
+/// The words of the command line ("run", scene, ..) without options that determine where and how it runs.
+std::vector<std::string> words_of(const SharingOptions& options);
+
 /// Whether the command line requests work in parts.
 bool is_shared(const SharingOptions& options, const std::string& device);
 
 struct SharedWork {
-    std::vector<std::string> words;  ///< command line without the options above: "run", scene, ..
-    std::filesystem::path out;       ///< the shared folder
+    std::filesystem::path out;  ///< the shared folder
     /// Starts or continues the work; `workers`: number of expected workers. Throws InputError if the content
     /// of the folder, or another program that uses it, is incompatible.
     std::function<std::unique_ptr<PartedWork>(std::size_t workers)> begin;

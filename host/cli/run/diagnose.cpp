@@ -27,26 +27,18 @@ namespace {
 struct DiagnoseCommand {
     SceneOptions scene;
     std::string out, device, library;
-    std::vector<std::string> experiments, candidates;
-    int replicates = 32, pairs = 8, confirmations = 8;
-    double refine = 4;
-    std::uint64_t seed = 1;
+    std::vector<std::string> experiments;
+    DiagnoseOptions options;
     SharingOptions sharing;
 };
 
-DiagnoseOptions options_of(const DiagnoseCommand& command) {
-    DiagnoseOptions options;
+void fill_in(DiagnoseCommand& command) {
+    DiagnoseOptions& options = command.options;
     options.folder = command.out;
-    options.candidates = command.candidates;
-    options.replicates = command.replicates;
-    options.pairs = std::min(command.pairs, command.replicates);
-    options.confirmations = command.confirmations;
-    options.refine = command.refine;
-    options.seed = command.seed;
+    options.pairs = std::min(options.pairs, options.replicates);
     if (!command.library.empty()) options.library = command.library;
     options.program = version_text;
     options.stop_wanted = Interrupt::wanted;
-    return options;
 }
 
 void warn_of_odd_data(const Experiment& experiment) {
@@ -65,7 +57,7 @@ Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene,
     std::ranges::for_each(experiments, warn_of_odd_data);
     const Interrupt interrupt;
     StageProgress stages;
-    DiagnoseOptions options = options_of(command);
+    DiagnoseOptions options = command.options;
     options.on_progress = [&](const std::string& stage, double fraction) { stages.show(stage, fraction); };
     options.on_note = [](const std::string& note) { spdlog::warn("{}", note); };
     return diagnose_experiment(device, scene, experiments, options);
@@ -90,36 +82,18 @@ int run_alone(const DiagnoseCommand& command, const Scene& scene,
     return exit_done;
 }
 
-/// The command line without options that determine where and how it runs.
-std::vector<std::string> words_of(const DiagnoseCommand& command) {
-    std::vector<std::string> words{"diagnose", command.scene.file};
-    for (const auto& setting : command.scene.overrides) words.insert(words.end(), {"--set", setting});
-    const auto add = [&](const char* option, const std::string& value) {
-        if (!value.empty()) words.insert(words.end(), {option, value});
-    };
-    for (const auto& experiment : command.experiments) add("--experiment", experiment);
-    add("--out", command.out);
-    add("--candidates", fmt::format("{}", fmt::join(command.candidates, ",")));
-    add("--replicates", std::to_string(command.replicates));
-    add("--pairs", std::to_string(command.pairs));
-    add("--seed", std::to_string(command.seed));
-    add("--library", command.library);
-    return words;
-}
-
 int run(DiagnoseCommand& command) {
     const Scene scene = command.scene.read();
     const std::vector<Experiment> experiments =
         read_experiments({command.experiments.begin(), command.experiments.end()}, "--experiment");
+    fill_in(command);
     if (!is_shared(command.sharing, command.device)) return run_alone(command, scene, experiments);
-    const DiagnoseOptions options = options_of(command);
     SharedWork work;
-    work.words = words_of(command);
     work.out = command.out;
     work.begin = [&](std::size_t) {
         expect_no_experiment(command.out);
         make_result_folder(command.out);
-        return library_parts(scene, experiments, options);
+        return library_parts(scene, experiments, command.options);
     };
     work.report = [&] {
         if (command.device == "all") command.device.clear();
@@ -144,25 +118,25 @@ void add_diagnose(CLI::App& app, int& exit_code) {
     sub->add_option("--out", command->out, "Folder for the verdict, the page and the simulations")
         ->required()
         ->type_name("DIR");
-    sub->add_option("--candidates", command->candidates, "Candidate effects; default: all")
+    sub->add_option("--candidates", command->options.candidates, "Candidate effects; default: all")
         ->delimiter(',')
         ->type_name("A,B,..");
-    sub->add_option("--replicates", command->replicates,
+    sub->add_option("--replicates", command->options.replicates,
                     "Number of runs of the unchanged scene; their scatter is the noise floor")
         ->check(CLI::Range(8, 10000));
-    sub->add_option("--pairs", command->pairs,
+    sub->add_option("--pairs", command->options.pairs,
                     "Number of runs of each effect at each of its two amplitudes; at most --replicates")
         ->check(CLI::Range(2, 10000));
-    sub->add_option("--confirmations", command->confirmations,
+    sub->add_option("--confirmations", command->options.confirmations,
                     "Number of runs that confirm each proposed effect at its fitted amplitude; 0: none")
         ->check(CLI::Range(0, 10000));
     sub->add_option(
-           "--refine", command->refine,
+           "--refine", command->options.refine,
            "If the scene is not converged: largest factor by which plate.speed, grains.density or "
            "numerics.time_step is lowered before the diagnosis is repeated (runs take up to that much "
            "longer); 1: never, and pauses of the experiment's plate are not simulated")
         ->check(CLI::Range(1.0, 64.0));
-    sub->add_option("--seed", command->seed, "Seed of all random numbers");
+    sub->add_option("--seed", command->options.seed, "Seed of all random numbers");
     sub->add_option("--library", command->library,
                     "File with the simulated changes by each effect, for use with further experiments; read "
                     "if it exists, otherwise computed and written")

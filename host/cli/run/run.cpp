@@ -34,18 +34,10 @@ struct RunCommand {
     RunCut cut;
 };
 
-/// The command line without options that determine where and how it runs.
-std::vector<std::string> words_of(const RunCommand& command) {
-    std::vector<std::string> words{"run", command.scene.file};
-    for (const auto& setting : command.scene.overrides) words.insert(words.end(), {"--set", setting});
-    words.insert(words.end(), {"--out", command.out});
-    return words;
-}
-
 std::string resume_command(const RunCommand& command) {
-    std::string text = "mcdem " + shell_words(words_of(command));
+    std::string text = "mcdem " + shell_words(words_of(command.sharing));
     if (!command.device.empty()) text += " --device " + shell_word(command.device);
-    return text + " --resume" + (command.no_figures ? " --no-figures" : "");
+    return text + " --resume";
 }
 
 void warn_of_failure(const Replica& replica, const Failure& failure) {
@@ -138,7 +130,6 @@ int report_run(const RunCommand& command, const RunSummary& summary) {
 
 SharedWork shared_work(const RunCommand& command, const Scene& scene) {
     SharedWork work;
-    work.words = words_of(command);
     work.out = command.out;
     work.begin = [&](std::size_t workers) {
         RunOptions options;
