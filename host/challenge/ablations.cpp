@@ -15,7 +15,7 @@ template <class Wanted>
 void observe_only(Evidence& evidence, Wanted wanted) {
     const auto cells = cells_of(evidence.library.grid);
     for (std::size_t k = 0; k < cells.size(); ++k)
-        if (!wanted(observables()[static_cast<std::size_t>(cells[k].observable)]))
+        if (!wanted(observables()[cells[k].observable]))
             evidence.observed[static_cast<Eigen::Index>(k)] = not_available;
 }
 
@@ -40,7 +40,7 @@ void without_pairing(Evidence& evidence) {
     evidence.library_is_own = true;  // the baseline is not of the experiment's packing
     evidence.baseline = Eigen::MatrixXd::Zero(packings, library.baseline.cols());
     std::vector<int> replicates(static_cast<std::size_t>(packings), 0);
-    for (const int packing : library.packing) ++replicates[static_cast<std::size_t>(packing)];
+    for (const int packing : library.packing) ++replicates[packing];
     // Every replicate represents a packing of its own; those of one packing stay in one fold of eight.
     const int step = (packings + 7) / 8 * 8;
     std::vector<int> seen(static_cast<std::size_t>(packings), 0);
@@ -72,7 +72,7 @@ Winner winner(const GapSpace& space, const GapData& data) {
     Winner best;
     std::vector<double> gains;
     for (int c = 0; c < data.effects; ++c) {
-        const Candidate& candidate = data.candidates[static_cast<std::size_t>(c)];
+        const Candidate& candidate = data.candidates[c];
         const double gain = gains.emplace_back(fit_effect(space, candidate, data.gap).score);
         if (gain >= best.gain) best = {candidate.signature->name, gain, 0};
     }
@@ -89,7 +89,7 @@ Answer smallest_residual(const Evidence& evidence) {
     const auto count = static_cast<Eigen::Index>(data.cells.size());
     Eigen::MatrixXd independent = Eigen::MatrixXd::Zero(count, data.noise.cols());
     for (Eigen::Index k = 0; k < count; ++k) {
-        const auto cell = data.cells[static_cast<std::size_t>(k)];
+        const auto cell = data.cells[k];
         independent(k, cell) = data.noise.col(cell).norm() /
                                std::sqrt(static_cast<double>(data.noise.rows())) *
                                std::sqrt(static_cast<double>(count));

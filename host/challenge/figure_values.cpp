@@ -96,7 +96,7 @@ Json measured(const std::vector<ScoredCase>& cases, std::vector<double> edges, X
     std::vector<Bin> bins(edges.size());
     for (const ScoredCase& c : cases) {
         const auto bin = std::ranges::upper_bound(edges, x_of(c)) - edges.begin();
-        Bin& b = bins[static_cast<std::size_t>(std::min<std::ptrdiff_t>(bin, std::ssize(edges) - 1))];
+        Bin& b = bins[std::min<std::ptrdiff_t>(bin, std::ssize(edges) - 1)];
         b.x += (x_of(c) - b.x) / ++b.cases;
         b.hits += is_hit(c);
     }

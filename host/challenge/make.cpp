@@ -133,8 +133,7 @@ private:
                 throw RunError(fmt::format(
                     "{} realities cannot be simulated even with weak effects; compress less", failed.size()));
             for (const ChallengeCase* c : failed)
-                for (Hidden& effect :
-                     challenge_.cases[static_cast<std::size_t>(c - challenge_.cases.data())].effects)
+                for (Hidden& effect : challenge_.cases[c - challenge_.cases.data()].effects)
                     effect.amplitude *= weaker;
             tried = failed;
         }

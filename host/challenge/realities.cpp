@@ -86,7 +86,7 @@ std::vector<Recording> Realities::simulate(std::span<const ChallengeCase* const>
     std::vector<Packing> starts;
     for (const ChallengeCase* c : cases) {
         batch.replicas.push_back(reality_of(*c).replica);
-        starts.push_back(packings_[static_cast<std::size_t>(c->packing)]);
+        starts.push_back(packings_[c->packing]);
         apply_jitter(starts.back(), start_jitter * stated_.mean_diameter, c->seed);
     }
     const auto loading = static_cast<std::size_t>(1 + stated_.replica.protocol.scans_per_stroke);

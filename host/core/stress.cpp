@@ -12,27 +12,24 @@ namespace {
 
 /// Vector from the centre of a grain to the contact point; `grain` is one of the contact's two grains.
 Vec3 arm(const Box& box, const Scan& scan, const Contact& contact, int grain) {
-    return apart(box, scan.position[static_cast<std::size_t>(grain)], contact.point);
+    return apart(box, scan.position[grain], contact.point);
 }
 
 /// For each grain, minus the sum over its contacts of arm times force [N m].
 std::vector<Mat3> moments(const Box& box, const Scan& scan) {
     std::vector<Mat3> sums(scan.position.size(), Mat3::Zero());
     for (const Contact& contact : scan.contacts) {
-        sums[static_cast<std::size_t>(contact.grain)] -=
-            arm(box, scan, contact, contact.grain) * contact.force.transpose();
+        sums[contact.grain] -= arm(box, scan, contact, contact.grain) * contact.force.transpose();
         if (!is_wall(contact.partner))
-            sums[static_cast<std::size_t>(contact.partner)] +=
-                arm(box, scan, contact, contact.partner) * contact.force.transpose();
+            sums[contact.partner] += arm(box, scan, contact, contact.partner) * contact.force.transpose();
     }
     return sums;
 }
 
 /// Unit vector from the grain of a contact to its partner.
 Vec3 direction(const Box& box, const Scan& scan, const Contact& contact) {
-    const Vec3& centre = scan.position[static_cast<std::size_t>(contact.grain)];
-    const Vec3& other =
-        is_wall(contact.partner) ? contact.point : scan.position[static_cast<std::size_t>(contact.partner)];
+    const Vec3& centre = scan.position[contact.grain];
+    const Vec3& other = is_wall(contact.partner) ? contact.point : scan.position[contact.partner];
     return apart(box, centre, other).normalized();
 }
 

@@ -161,8 +161,7 @@ private:
     Trial trial_of(const Replica& replica, int copy, double jitter) const {
         Model model{replica, {}, mean_diameter_};
         model.instrument.stated.force_threshold = replica.protocol.force_threshold;
-        return {model, packings_[static_cast<std::size_t>(copy)], jitter, 0,
-                options_.seed + static_cast<std::uint64_t>(copy)};
+        return {model, packings_[copy], jitter, 0, options_.seed + static_cast<std::uint64_t>(copy)};
     }
 
     Question question_of(const Scene& scene, const Model& model) const {

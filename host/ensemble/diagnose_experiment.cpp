@@ -336,8 +336,7 @@ private:
                 shifts[std::ranges::find(plan_.nuisances, name, &Nuisance::name) - plan_.nuisances.begin()] +=
                     fit.amplitudes[k];
         }
-        for (Eigen::Index k = 0; k < shifts.size(); ++k)
-            plan_.nuisances[static_cast<std::size_t>(k)].apply(model, shifts[k]);
+        for (Eigen::Index k = 0; k < shifts.size(); ++k) plan_.nuisances[k].apply(model, shifts[k]);
         return model;
     }
 

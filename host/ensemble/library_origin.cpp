@@ -134,8 +134,7 @@ double load(const Grid& grid, const Eigen::MatrixXd& baseline) {
     const std::vector<Cell> cells = cells_of(grid);
     double sum = 0;
     for (std::size_t k = 0; k < cells.size(); ++k) {
-        const bool top_force =
-            observables()[static_cast<std::size_t>(cells[k].observable)].name == "top_force";
+        const bool top_force = observables()[cells[k].observable].name == "top_force";
         if (!top_force || cells[k].phase != Phase::load) continue;
         const auto forces = baseline.col(static_cast<Eigen::Index>(k)).array().exp();
         const auto known = forces.isFinite();

@@ -28,7 +28,7 @@ struct Load {
 std::vector<Load> loads(const Recording& recording, const Scan& scan) {
     std::vector<Load> all(recording.diameter.size());
     const auto add = [&](int grain, const Vec3& force) {
-        Load& load = all[static_cast<std::size_t>(grain)];
+        Load& load = all[grain];
         load.sum += force;
         load.squares += force.squaredNorm();
         ++load.contacts;
@@ -60,7 +60,7 @@ Imbalance imbalance(const Experiment& experiment, const Scan& scan) {
     const auto all = loads(recording, scan);
     Imbalance found;
     for (int i = 0; i < static_cast<int>(all.size()); ++i) {
-        const Load& load = all[static_cast<std::size_t>(i)];
+        const Load& load = all[i];
         if (load.contacts < 2 || !is_in_bulk(recording, scan, i)) continue;
         const double volume = std::numbers::pi / 6 * std::pow(2 * radius_of(recording, i), 3);
         const double rest = (load.sum - Vec3(0, 0, specific_weight * volume)).norm();

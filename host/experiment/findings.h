@@ -45,12 +45,8 @@ inline constexpr auto plate_file = "plate.csv";
 inline constexpr auto grains_file = "grains.csv";
 inline constexpr auto contacts_file = "contacts.csv";
 
-inline const Vec3& at(const std::vector<Vec3>& position, int grain) {
-    return position[static_cast<std::size_t>(grain)];
-}
-inline double radius_of(const Recording& recording, int grain) {
-    return 0.5 * recording.diameter[static_cast<std::size_t>(grain)];
-}
+inline const Vec3& at(const std::vector<Vec3>& position, int grain) { return position[grain]; }
+inline double radius_of(const Recording& recording, int grain) { return 0.5 * recording.diameter[grain]; }
 const std::vector<Wall>& walls_of(const Box& box);  ///< existing walls
 std::string container_words(const Box& box);        ///< "box of 165 by 166 mm"
 double mean_diameter(const Recording& recording);

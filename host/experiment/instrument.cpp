@@ -81,10 +81,9 @@ private:
         Contact contact = truth;
         contact.force *= gain(contact, frame) / (1 + instrument_.force_saturation * truth.force.norm());
         if (contact.force.norm() < instrument_.stated.force_threshold + instrument_.threshold_shift) return;
-        const Vec3& of_grain = shift[static_cast<std::size_t>(contact.grain)];
+        const Vec3& of_grain = shift[contact.grain];
         contact.point = stretched(truth.point) + of_grain;
-        if (!is_wall(contact.partner))
-            contact.point += 0.5 * (shift[static_cast<std::size_t>(contact.partner)] - of_grain);
+        if (!is_wall(contact.partner)) contact.point += 0.5 * (shift[contact.partner] - of_grain);
         contact.overlap = std::numeric_limits<double>::quiet_NaN();
         seen.push_back(contact);
     }
@@ -171,9 +170,7 @@ void average(Scan& scan, double grains, double force_threshold) {
         force += magnitude;
         if (is_wall(contact.partner) || scan.position.empty()) continue;
         branches += 1;
-        length += (scan.position[static_cast<std::size_t>(contact.partner)] -
-                   scan.position[static_cast<std::size_t>(contact.grain)])
-                      .norm();
+        length += (scan.position[contact.partner] - scan.position[contact.grain]).norm();
     }
     scan.coordination_number = sides / grains;
     if (contacts > 0) scan.mean_force = force / contacts;

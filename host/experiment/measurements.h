@@ -15,6 +15,8 @@ void read_plate(Table& table, double youngs_modulus, Recording& recording);
 void read_grains(Table& table, Recording& recording);
 /// contacts.csv: contacts of the listed frames.
 void read_contacts(Table& table, double youngs_modulus, Recording& recording);
+/// The frame of a row of these two: one of plate.csv, not below the `previous` one; another is a problem.
+std::optional<long> read_frame(Table& table, const Recording& recording, long previous);
 /// The largest force on the plate in any scan, at least 0 [N].
 double highest_top_force(const Recording& recording);
 /// Computes wall forces except the plate's, Z, <f> and <b> of the scans with contacts.

@@ -24,12 +24,12 @@ public:
 
     void read() {
         while (table_.next()) {
-            const auto frame = read_frame();
+            const auto frame = read_frame(table_, recording_, frame_);
             const auto contact = read_contact();
             if (!frame || !contact) continue;
             if (*frame != frame_) end_frame();
             frame_ = *frame;
-            recording_.scans[static_cast<std::size_t>(frame_)].contacts.push_back(*contact);
+            recording_.scans[frame_].contacts.push_back(*contact);
             rows_.push_back({contact->grain, contact->partner, table_.line()});
         }
         end_frame();
@@ -52,24 +52,6 @@ private:
                         "this contact is there twice in frame {}, first in line {}: list each pair once",
                         frame_, rows_[k - 1].line));
         rows_.clear();
-    }
-
-    std::optional<long> read_frame() {
-        const auto frame = table_.whole_number(0, 0);
-        const long last = static_cast<long>(recording_.scans.size()) - 1;
-        if (!frame) return std::nullopt;
-        if (*frame > last) {
-            table_.problem_once("last",
-                                fmt::format("frame must be one of plate.csv, 0 to {}, got {}", last, *frame));
-            return std::nullopt;
-        }
-        if (*frame < frame_) {
-            table_.problem_once(
-                "order", fmt::format("frames must be in order, got {} after {}: sort the rows by frame",
-                                     *frame, frame_));
-            return std::nullopt;
-        }
-        return frame;
     }
 
     std::optional<int> read_grain(std::size_t column) {
@@ -144,6 +126,24 @@ private:
 };
 
 }  // namespace
+
+std::optional<long> read_frame(Table& table, const Recording& recording, long previous) {
+    const auto frame = table.whole_number(0, 0);
+    const long last = static_cast<long>(recording.scans.size()) - 1;
+    if (!frame) return std::nullopt;
+    if (*frame > last) {
+        table.problem_once("last",
+                           fmt::format("frame must be one of plate.csv, 0 to {}, got {}", last, *frame));
+        return std::nullopt;
+    }
+    if (*frame < previous) {
+        table.problem_once(
+            "order", fmt::format("frames must be in order, got {} after {}: sort the rows by frame", *frame,
+                                 previous));
+        return std::nullopt;
+    }
+    return frame;
+}
 
 void read_contacts(Table& table, double youngs_modulus, Recording& recording) {
     ContactReader(table, youngs_modulus, recording).read();

@@ -49,7 +49,7 @@ public:
                             "the whole frame out",
                             frame_, grains, missing - seen.begin()));
         if (recording_.diameter.empty()) recording_.diameter = std::move(diameter);
-        recording_.scans[static_cast<std::size_t>(frame_)].position = std::move(position);
+        recording_.scans[frame_].position = std::move(position);
         rows_.clear();
     }
 
@@ -59,7 +59,7 @@ private:
     void check(const GrainRow& row) {
         check_diameter(row);
         const Box& box = recording_.box;
-        const double plate_z = recording_.scans[static_cast<std::size_t>(frame_)].plate_z;
+        const double plate_z = recording_.scans[frame_].plate_z;
         if (box.size_x > 0 && is_outside(box, plate_z, row.position))
             table_.problem_once(
                 "position",
@@ -133,24 +133,16 @@ private:
 
 void read_grains(Table& table, Recording& recording) {
     Frames frames(table, recording);
-    const long last = static_cast<long>(recording.scans.size()) - 1;
     while (table.next()) {
-        const auto frame = table.whole_number(0, 0), grain = table.whole_number(1, 0);
+        const auto frame = read_frame(table, recording, frames.frame());
+        const auto grain = table.whole_number(1, 0);
         const auto x = table.number(2), y = table.number(3), z = table.number(4), diameter = table.number(5);
         if (!frame || !grain || !x || !y || !z || !diameter) continue;
         if (frames.frame() < 0 && *frame != 0)
             table.problem_once(
                 "first",
                 fmt::format("the first frame must be 0, which says what grains there are, got {}", *frame));
-        if (*frame > last)
-            table.problem_once("last",
-                               fmt::format("frame must be one of plate.csv, 0 to {}, got {}", last, *frame));
-        else if (*frame < frames.frame())
-            table.problem_once("order",
-                               fmt::format("frames must be in order, got {} after {}: sort the rows by frame",
-                                           *frame, frames.frame()));
-        else
-            frames.add(*frame, {*grain, Vec3(*x, *y, *z), *diameter, table.line()});
+        frames.add(*frame, {*grain, Vec3(*x, *y, *z), *diameter, table.line()});
     }
     frames.end_frame();
 }

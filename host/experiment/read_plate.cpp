@@ -115,7 +115,7 @@ private:
     void check_time(std::size_t row, const ScanPlace& place) {
         const double time = recording_.scans[row].time - recording_.scans[row - 1].time;
         const double set = place.time - programme_.places[row - 2].time;
-        const double whole = programme_.stages[static_cast<std::size_t>(place.stage)].time;
+        const double whole = programme_.stages[place.stage].time;
         if (std::abs(time - set) > far_time * whole)
             problem(row, fmt::format("time_s must be {:.6g} s after the row before, as {} holds, got {:.6g} "
                                      "s: state when the hold was scanned (time, scans, scan_at)",

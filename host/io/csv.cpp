@@ -43,7 +43,7 @@ double pressing(const Box& box, const Scan& scan, Wall wall) {
     if ((!has_wall(box, wall) && !is_cell(box)) || (is_cylinder(box) && wall == curved_wall))
         return std::numeric_limits<double>::quiet_NaN();
     const int n = static_cast<int>(wall);  // two walls for each axis, the lower one first
-    const double force = scan.wall_force[static_cast<std::size_t>(n)][n / 2];
+    const double force = scan.wall_force[n][n / 2];
     return n % 2 ? force : -force;
 }
 

@@ -111,12 +111,11 @@ std::vector<GrainLoad> grain_loads(const Scan& scan) {
     for (const Contact& contact : scan.contacts) {
         for (const int grain : {contact.grain, contact.partner}) {
             if (is_wall(grain)) continue;
-            GrainLoad& load = loads[static_cast<std::size_t>(grain)];
+            GrainLoad& load = loads[grain];
             load.contacts += 1;
             load.force_magnitude += contact.force.norm();
         }
-        if (is_wall(contact.partner))
-            loads[static_cast<std::size_t>(contact.grain)].wall_force += contact.force;
+        if (is_wall(contact.partner)) loads[contact.grain].wall_force += contact.force;
     }
     return loads;
 }

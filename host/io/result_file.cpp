@@ -155,7 +155,7 @@ void ResultFile::read_vectors(const Window& window, std::vector<Vec3> Scan::*vec
     for (std::size_t k = 0; k < step.size(); ++k) {
         const long scan = step[k] - window.first;
         if (scan >= 0 && scan < scans)
-            window.scans[static_cast<std::size_t>(scan)].*vectors = vectors_in(table, k, grains);
+            window.scans[scan].*vectors = vectors_in(table, k, grains);
         else if (window.all)
             throw InputError(fmt::format("{}: step {} must be the row of a scan, 0 to {}", table.where(),
                                          step[k], scans - 1));

@@ -25,7 +25,7 @@ h5::Handle truth_type() {
 h5::Handle phase_type() {
     h5::Handle type(H5Tenum_create(H5T_NATIVE_SCHAR), H5Tclose);
     for (signed char i = 0; i < static_cast<signed char>(name_list<Phase>.size()); ++i)
-        H5Tenum_insert(type, std::string(name_list<Phase>[static_cast<std::size_t>(i)]).c_str(), &i);
+        H5Tenum_insert(type, std::string(name_list<Phase>[i]).c_str(), &i);
     return type;
 }
 

@@ -194,11 +194,10 @@ void write_vtk_contacts(const std::filesystem::path& file, const Recording& reco
     std::vector<double> end_force, end_magnitude;
     const Box now = deformed(recording.box, scan.strain);
     for (const Contact& contact : scan.contacts) {
-        const Vec3& from = scan.position[static_cast<std::size_t>(contact.grain)];
-        const Vec3 to =
-            is_wall(contact.partner)
-                ? wall_foot(recording.box, wall_of(contact.partner), scan.plate_z, from)
-                : Vec3(from + apart(now, from, scan.position[static_cast<std::size_t>(contact.partner)]));
+        const Vec3& from = scan.position[contact.grain];
+        const Vec3 to = is_wall(contact.partner)
+                            ? wall_foot(recording.box, wall_of(contact.partner), scan.plate_z, from)
+                            : Vec3(from + apart(now, from, scan.position[contact.partner]));
         lines.add(VtkCell::line, {from, to});
         end_magnitude.insert(end_magnitude.end(), 2, contact.force.norm());
         for (int end = 0; end < 2; ++end) add(end_force, contact.force);
@@ -310,8 +309,7 @@ VtkWalls vtk_walls(const Recording& recording, const Scan& scan) {
 void write_vtk_walls(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
     const VtkWalls walls = vtk_walls(recording, scan);
     std::vector<double> force;
-    for (const int wall : walls.wall)
-        add(force, wall < 0 ? Vec3(Vec3::Zero()) : scan.wall_force[static_cast<std::size_t>(wall)]);
+    for (const int wall : walls.wall) add(force, wall < 0 ? Vec3(Vec3::Zero()) : scan.wall_force[wall]);
     write_grid(file, walls.cells, recording, scan, [&](VtkGrid& grid) {
         grid.cell_data("wall", walls.wall);
         grid.cell_data("force", force, {3});

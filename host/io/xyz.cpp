@@ -44,7 +44,7 @@ std::string in_quotes(std::string text) {
 /// type as it takes `species`, which ASE requires to be a chemical element.
 std::string particle_type(const Recording& recording, std::size_t grain) {
     if (recording.species.empty()) return "X";
-    std::string word = recording.species_names[static_cast<std::size_t>(recording.species[grain])];
+    std::string word = recording.species_names[recording.species[grain]];
     std::ranges::replace(word, ' ', '_');
     return word;
 }

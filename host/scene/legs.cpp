@@ -80,14 +80,12 @@ int scans_of(const Stage& stage) {
 }
 
 double scan_level(const Stage& stage, int number, double from, double target, const Plate& plate) {
-    if (!stage.scan_at.empty())
-        return in_si(stage, stage.scan_at[static_cast<std::size_t>(number - 1)], plate);
+    if (!stage.scan_at.empty()) return in_si(stage, stage.scan_at[number - 1], plate);
     return from + (target - from) * number / stage.scans;
 }
 
 double scan_time(const Stage& stage, int number) {
-    return stage.scan_at.empty() ? stage.time * number / stage.scans
-                                 : stage.scan_at[static_cast<std::size_t>(number - 1)];
+    return stage.scan_at.empty() ? stage.time * number / stage.scans : stage.scan_at[number - 1];
 }
 
 std::vector<Leg> legs_of(const std::vector<Stage>& stages, const Plate& plate) {

@@ -25,7 +25,7 @@ public:
             }
         }
     }
-    std::span<const Key> of(int element) const { return keys_[static_cast<std::size_t>(element)]; }
+    std::span<const Key> of(int element) const { return keys_[element]; }
 
 private:
     std::vector<std::vector<Key>> keys_;

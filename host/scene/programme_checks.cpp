@@ -67,7 +67,7 @@ public:
                 std::vector<CrossProblem>& problems)
         : is_cell_(is_cell(settings.replica.box)),
           plate_(settings.replica.plate),
-          stage_(settings.replica.programme[static_cast<std::size_t>(number)]),
+          stage_(settings.replica.programme[number]),
           number_(number),
           said_(said),
           problems_(problems) {}
@@ -279,7 +279,7 @@ void check_kept_stresses(const std::vector<Stage>& programme, const Plate& plate
                          std::vector<CrossProblem>& problems) {
     const Stage* move = nullptr;
     for (const Leg& leg : legs_of(programme, plate)) {
-        const Stage& stage = programme[static_cast<std::size_t>(leg.stage)];
+        const Stage& stage = programme[leg.stage];
         if (stage.kind != StageKind::hold) {
             move = &stage;
         } else if (stage.keep == Controlled::stress && !(move && sets_stress(*move))) {

@@ -85,7 +85,7 @@ std::vector<ScanPlace> scan_places(const std::vector<Stage>& programme, const Pl
     double position = plate.start, force = not_given;  // at the end of the previous leg
     const std::vector<Leg> legs = legs_of(programme, plate);
     for (std::size_t l = 0; l < legs.size(); ++l) {
-        const Stage& stage = programme[static_cast<std::size_t>(legs[l].stage)];
+        const Stage& stage = programme[legs[l].stage];
         const bool held = stage.kind == StageKind::hold, by_force = controlled(stage) == Controlled::force;
         const double from = by_force ? force : position;
         const double end = held ? stage.time : legs[l].target;

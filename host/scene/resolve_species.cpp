@@ -133,7 +133,7 @@ void draw_species(Packing& packing, const Replica& replica) {
     int species = 0;
     for (const std::size_t i : order) {
         while (species < last && before + weight(i) / 2 > end)
-            end += replica.species[static_cast<std::size_t>(++species)].fraction * all;
+            end += replica.species[++species].fraction * all;
         packing.species[i] = species;
         before += weight(i);
     }
@@ -188,7 +188,7 @@ void assign_species(Packing& packing, const Replica& replica, const std::string&
                         source));
     std::vector<int> places;
     for (const std::string& word : words) places.push_back(place_of(word, replica.species, source));
-    for (int& species : packing.species) species = places[static_cast<std::size_t>(species)];
+    for (int& species : packing.species) species = places[species];
 }
 
 }  // namespace mcdem::scene

@@ -100,7 +100,7 @@ std::vector<ScanQuantity> scan_quantities(const std::vector<Stage>& stages, cons
     std::vector<ScanQuantity> all;
     Values strain{}, stress = no_stress;
     for (const Leg& leg : legs) {
-        const Stage& stage = stages[static_cast<std::size_t>(leg.stage)];
+        const Stage& stage = stages[leg.stage];
         all.emplace_back();
         if (stage.kind == StageKind::hold) {
             if (stage.keep == Controlled::position) stress = no_stress;
@@ -139,7 +139,7 @@ std::vector<std::pair<int, std::string>> scan_at_problems(const std::vector<Stag
     const std::vector<Leg> legs = legs_of(stages, plate);
     const std::vector<ScanQuantity> quantities = scan_quantities(stages, legs);
     for (std::size_t l = 0; l < legs.size(); ++l) {
-        const Stage& stage = stages[static_cast<std::size_t>(legs[l].stage)];
+        const Stage& stage = stages[legs[l].stage];
         if (stage.kind != StageKind::move || stage.scan_at.empty() || told.contains(legs[l].stage)) continue;
         const auto problem = problem_of(stage, quantities[l]);
         if (problem && told.insert(legs[l].stage).second) problems.emplace_back(legs[l].stage, *problem);

@@ -166,7 +166,7 @@ bool Table::next() {
         split(*line, words);
         if (words.size() == column_of_word_.size()) {
             for (std::size_t i = 0; i < words.size(); ++i)
-                if (column_of_word_[i] >= 0) words_[static_cast<std::size_t>(column_of_word_[i])] = words[i];
+                if (column_of_word_[i] >= 0) words_[column_of_word_[i]] = words[i];
             return true;
         }
         problem(

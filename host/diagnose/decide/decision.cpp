@@ -23,7 +23,7 @@ int best_single(const Findings& findings) {
     for (std::size_t k = 0; k < findings.proposals.size(); ++k) {
         const Proposal& proposal = findings.proposals[k];
         if (proposal.candidates.size() != 1) continue;
-        if (best < 0 || proposal.best_gain() > findings.proposals[static_cast<std::size_t>(best)].best_gain())
+        if (best < 0 || proposal.best_gain() > findings.proposals[best].best_gain())
             best = static_cast<int>(k);
     }
     return best;
@@ -120,8 +120,7 @@ int proposal_of(std::size_t candidate, const Findings& findings) {
 void keep_those_that_do(std::vector<std::size_t>& group, const Findings& findings, const Limits& limits) {
     const auto fails = [&](std::size_t candidate) {
         const int k = proposal_of(candidate, findings);
-        return k >= 0 &&
-               !takes_the_gap_away(findings.proposals[static_cast<std::size_t>(k)], findings, limits);
+        return k >= 0 && !takes_the_gap_away(findings.proposals[k], findings, limits);
     };
     group.erase(std::remove_if(group.begin() + 1, group.end(), fails), group.end());
 }
@@ -160,10 +159,10 @@ Decision chosen(const Findings& findings, int single, std::vector<std::size_t> g
     decision.proposal = single;
     decision.group = std::move(group);
     if (findings.p_value >= limits.false_alarm) return decision;
-    const Proposal& leader = findings.proposals[static_cast<std::size_t>(single)];
+    const Proposal& leader = findings.proposals[single];
     const int pair = gaining_pair(findings, leader.best_gain(), limits);
     if (pair >= 0) {
-        const Proposal& two = findings.proposals[static_cast<std::size_t>(pair)];
+        const Proposal& two = findings.proposals[pair];
         if (takes_the_gap_away(two, findings, limits) && is_better(two, leader, limits)) {
             decision.proposal = pair;
             decision.group = two.candidates;
@@ -191,7 +190,7 @@ Decision decide(const Findings& findings, const Limits& limits) {
                 {},
                 std::vector<double>(findings.gain.size(), 0.0)};
     }
-    const Proposal& leader = findings.proposals[static_cast<std::size_t>(single)];
+    const Proposal& leader = findings.proposals[single];
     const std::vector<double> gains = known_gains(findings, leader);
     const double best = leader.best_gain(), margin = limits.group_margin(best);
     Decision decision = chosen(findings, single, group_of(leader.candidates[0], gains, best, margin), limits);

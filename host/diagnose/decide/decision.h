@@ -95,7 +95,7 @@ struct Decision {
 };
 /// The proposal of a decision that has one.
 inline const Proposal& chosen_proposal(const Findings& findings, const Decision& decision) {
-    return findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    return findings.proposals[decision.proposal];
 }
 Decision decide(const Findings& findings, const Limits& limits);
 

@@ -115,8 +115,8 @@ private:
     static void take_amplitude(Cause& cause, std::size_t candidate, const Proposal& proposal) {
         const auto place = std::ranges::find(proposal.candidates, candidate) - proposal.candidates.begin();
         if (place == std::ssize(proposal.candidates)) return;
-        cause.amplitude = proposal.amplitudes[static_cast<std::size_t>(place)];
-        cause.amplitude_error = proposal.errors[static_cast<std::size_t>(place)];
+        cause.amplitude = proposal.amplitudes[place];
+        cause.amplitude_error = proposal.errors[place];
     }
 
     std::vector<std::string> names_of(const std::vector<std::size_t>& candidates) const {
@@ -302,7 +302,7 @@ Diagnosis DiagnosisBuilder::diagnosis() const {
     d.explanation = explanation_of(findings_, decision_, limits_);
     const Proposal& explaining = findings_.proposals[decided()];
     if (explaining.left_out) {
-        const Cell cell = cells_of(evidence_.library.grid)[static_cast<std::size_t>(*explaining.left_out)];
+        const Cell cell = cells_of(evidence_.library.grid)[*explaining.left_out];
         d.explanation->without = fmt::format("{:.4g} mm of {}ing", cell.displacement * 1e3, name(cell.phase));
     }
     d.gap_reduction = measure_reduction(data_, split_of(explaining), explaining, mean_of_, evidence_.seed);

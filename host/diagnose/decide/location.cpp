@@ -41,10 +41,10 @@ Location locate(const GapSpace& space, const GapData& data, const NullDistributi
     const Eigen::VectorXd refitted = space.refitted(gap);
     std::vector<std::vector<WhereCell>> rows(2 * observables().size());
     for (std::size_t k = 0; k < data.cells.size(); ++k) {
-        const Cell& cell = all[static_cast<std::size_t>(data.cells[k])];
+        const Cell& cell = all[data.cells[k]];
         const auto i = static_cast<Eigen::Index>(k);
         const double sigma = space.sigma()[i];
-        WhereCell where{std::string(observables()[static_cast<std::size_t>(cell.observable)].name),
+        WhereCell where{std::string(observables()[cell.observable].name),
                         std::string(name(cell.phase)),
                         cell.displacement,
                         gap[data.cells[k]] / sigma,

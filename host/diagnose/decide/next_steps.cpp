@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/median.h"
 #include "diagnose/infer/effects.h"
 #include "diagnose/infer/library.h"
 #include "diagnose/observe/needed_to_diagnose.h"
@@ -95,7 +96,7 @@ double power_to_tell(double squared_distance, double margin) {
 double amplitude_of(const Findings& findings, const Decision& decision, std::size_t candidate) {
     const Proposal& decided = chosen_proposal(findings, decision);
     const auto place = std::ranges::find(decided.candidates, candidate) - decided.candidates.begin();
-    return place < std::ssize(decided.candidates) ? decided.amplitudes[static_cast<std::size_t>(place)] : 0;
+    return place < std::ssize(decided.candidates) ? decided.amplitudes[place] : 0;
 }
 
 /// Measurements that distinguish the leading effect from the others in its group.
@@ -124,11 +125,6 @@ double more_information(const GapSpace& then, const GapSpace& now, const Candida
     const Eigen::VectorXd slope = candidate.signature->slope(amplitude);
     const double known = now.whiten(slope).squaredNorm();
     return known > 0 ? then.whiten(slope).squaredNorm() / known : 1;
-}
-
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    return values.empty() ? 1 : values[values.size() / 2];
 }
 
 /// Without rivals: resulting errors of the amplitude, or without a gap resulting detection limits.

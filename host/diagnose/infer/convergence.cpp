@@ -44,12 +44,12 @@ CellError error_of(const RefinedRuns& refinement, const Eigen::VectorXd& base, E
 }  // namespace
 
 bool Convergence::is_relative(std::size_t cell) const {
-    const auto name = observables()[static_cast<std::size_t>(cells[cell].observable)].name;
+    const auto name = observables()[cells[cell].observable].name;
     return name == "top_force" || name == "mean_force";
 }
 
 double Convergence::scale(std::size_t cell) const {
-    const double resolution = observables()[static_cast<std::size_t>(cells[cell].observable)].resolution;
+    const double resolution = observables()[cells[cell].observable].resolution;
     return std::fmax(deviation[static_cast<Eigen::Index>(cell)], resolution / limits.deviations);
 }
 

@@ -86,11 +86,9 @@ public:
 
 private:
     Eigen::Index effects() const { return static_cast<Eigen::Index>(candidates_.size()); }
-    const Signature& signature(Eigen::Index k) const {
-        return *candidates_[static_cast<std::size_t>(k)].signature;
-    }
+    const Signature& signature(Eigen::Index k) const { return *candidates_[k].signature; }
     std::pair<double, double> bounds(Eigen::Index k) const {
-        const Candidate& candidate = candidates_[static_cast<std::size_t>(k)];
+        const Candidate& candidate = candidates_[k];
         return {candidate.low, candidate.high};
     }
     double within_reach(Eigen::Index k, double a) const {

@@ -74,7 +74,7 @@ void leave_out_replicates(Evidence& evidence, const FailureCauses& causes, std::
                     (causes.contains("") ? ": " + causes.at("") : ""));
     library.baseline = Eigen::MatrixXd(library.baseline(kept, Eigen::all));
     std::vector<int> packing;
-    for (const auto r : kept) packing.push_back(library.packing[static_cast<std::size_t>(r)]);
+    for (const auto r : kept) packing.push_back(library.packing[r]);
     library.packing = packing;
     evidence.baseline = Eigen::MatrixXd(evidence.baseline(own, Eigen::all));
 }

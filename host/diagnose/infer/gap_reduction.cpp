@@ -23,8 +23,7 @@ public:
     /// Remainder after refitting the nuisances.
     Eigen::VectorXd refitted(Eigen::VectorXd gap) const {
         const Eigen::VectorXd shifts = space_.fit_nuisances(gap);
-        for (Eigen::Index k = 0; k < shifts.size(); ++k)
-            gap -= shifts[k] * data_.free[static_cast<std::size_t>(k)].direction;
+        for (Eigen::Index k = 0; k < shifts.size(); ++k) gap -= shifts[k] * data_.free[k].direction;
         return gap;
     }
 
@@ -41,7 +40,7 @@ public:
         for (std::size_t k = 0; k < candidates.size(); ++k)
             sum += candidates[k].signature->at(fit.amplitudes[k]);
         for (Eigen::Index k = 0; k < fit.nuisances.size(); ++k)
-            sum += fit.nuisances[k] * data_.free[static_cast<std::size_t>(k)].direction;
+            sum += fit.nuisances[k] * data_.free[k].direction;
         return sum;
     }
 
@@ -99,7 +98,7 @@ Split split_cells(const CellChoice& cells, const Grid& grid) {
     const auto all = cells_of(grid);
     Split split;
     for (const auto cell : cells) {
-        const Cell& c = all[static_cast<std::size_t>(cell)];
+        const Cell& c = all[cell];
         const bool fitted = c.phase == Phase::load && c.displacement < fitted_part * grid.stroke;
         (fitted ? split.fitted : split.held_out).push_back(cell);
     }

@@ -42,8 +42,7 @@ Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all) {
     const Eigen::Index each = cells_each(all);
     Eigen::ArrayXd list(static_cast<Eigen::Index>(cells.size()));
     for (std::size_t k = 0; k < cells.size(); ++k)
-        list[static_cast<Eigen::Index>(k)] =
-            observables()[static_cast<std::size_t>(cells[k] / each)].resolution;
+        list[static_cast<Eigen::Index>(k)] = observables()[cells[k] / each].resolution;
     return list;
 }
 

@@ -57,7 +57,7 @@ private:
         const double n = static_cast<double>(std::ranges::count(data_.group, group_of(r)));
         return std::sqrt(std::max(1.0, n - 1) / n);
     }
-    int group_of(Eigen::Index r) const { return data_.group[static_cast<std::size_t>(r)]; }
+    int group_of(Eigen::Index r) const { return data_.group[r]; }
     const GapData& data_;
     std::vector<Eigen::Index> kept_, out_;
 };
@@ -191,7 +191,7 @@ NullDistribution::NullDistribution(const GapData& data, int mean_of, std::uint64
                 Eigen::VectorXd gap = both * left_out.row(r);
                 for (const FreeParameter& parameter : data.free)
                     gap += parameter.sigma * random.normal() * parameter.direction;
-                const int packing = own_known ? data.group[static_cast<std::size_t>(r)] : 0;
+                const int packing = own_known ? data.group[r] : 0;
                 draws_[packing].push_back(gap_statistics(space, data, gap));
             }
     }

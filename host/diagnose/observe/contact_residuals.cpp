@@ -38,8 +38,8 @@ public:
     }
 
 private:
-    double radius(int grain) const { return 0.5 * recording_.diameter[static_cast<std::size_t>(grain)]; }
-    const Vec3& position(int grain) const { return scan_.position[static_cast<std::size_t>(grain)]; }
+    double radius(int grain) const { return 0.5 * recording_.diameter[grain]; }
+    const Vec3& position(int grain) const { return scan_.position[grain]; }
 
     void add(const Contact& contact) {
         ContactResidual c;
@@ -54,9 +54,8 @@ private:
         c.implied = std::copysign(std::cbrt(size * size), c.push);
         c.measured = -gap / c.reduced_radius;
         const int index = static_cast<int>(list_.size());
-        sides_[static_cast<std::size_t>(c.grain)].push_back({index, c.normal, c.push});
-        if (!is_wall(c.partner))
-            sides_[static_cast<std::size_t>(c.partner)].push_back({index, -c.normal, c.push});
+        sides_[c.grain].push_back({index, c.normal, c.push});
+        if (!is_wall(c.partner)) sides_[c.partner].push_back({index, -c.normal, c.push});
         list_.push_back(c);
     }
 
@@ -94,7 +93,7 @@ private:
             for (const Side& from : sides)
                 if (&from != &at && from.push > 0)
                     sum += from.push * displacement_on_sphere(at.direction.dot(from.direction), nu);
-            ContactResidual& c = list_[static_cast<std::size_t>(at.contact)];
+            ContactResidual& c = list_[at.contact];
             c.cross_contact += scale * sum / c.reduced_radius;
         }
     }

@@ -102,7 +102,7 @@ std::array<double, 7> force_distribution_numbers(const Recording& recording, con
 // neighbour at z' acts in all sections between them and contributes f (z - z') / height. Forces of the floor
 // and side walls act below the grain, those of the plate above it.
 double section_load(const Scan& scan) {
-    const auto height = [&](int grain) { return scan.position[static_cast<std::size_t>(grain)].z(); };
+    const auto height = [&](int grain) { return scan.position[grain].z(); };
     double moment = 0;
     for (const Contact& contact : scan.contacts) {
         const double from = !is_wall(contact.partner)                 ? height(contact.partner)
@@ -148,8 +148,7 @@ std::array<double, 4> fabric(const Recording& recording, const Scan& scan,
         vertical += c.push * c.normal.z() * c.normal.z();
         pulls += c.push < 0 ? 1 : 0;
         if (is_wall(c.partner)) continue;
-        height.push_back(scan.position[static_cast<std::size_t>(c.grain)].z() +
-                         0.5 * recording.diameter[static_cast<std::size_t>(c.grain)] * c.normal.z());
+        height.push_back(scan.position[c.grain].z() + 0.5 * recording.diameter[c.grain] * c.normal.z());
         force.push_back(c.push);
     }
     return {vertical / total - 1.0 / 3, -slope(height, force) * scan.plate_z / mean(force),
@@ -164,8 +163,8 @@ double torque_imbalance(const Recording& recording, std::span<const ContactResid
     std::vector<double> size(recording.diameter.size(), 0.0);
     const auto add = [&](int grain, const Vec3& outward, const Vec3& force) {
         const Vec3 turning = outward.cross(force);
-        torque[static_cast<std::size_t>(grain)] += turning;
-        size[static_cast<std::size_t>(grain)] += turning.norm();
+        torque[grain] += turning;
+        size[grain] += turning.norm();
     };
     for (const ContactResidual& c : contacts) {
         add(c.grain, c.normal, c.force);

@@ -61,8 +61,8 @@ std::vector<HoldScans> holds_of(const Recording& recording, const std::vector<Sc
         holds.back().end = scan;
     }
     for (HoldScans& hold : holds) {
-        const Scan& begin = recording.scans[static_cast<std::size_t>(hold.begin)];
-        hold.phase = recording.scans[static_cast<std::size_t>(hold.first)].phase;
+        const Scan& begin = recording.scans[hold.begin];
+        hold.phase = recording.scans[hold.first].phase;
         hold.displacement = recording.displacement(begin);
     }
     return holds;
@@ -161,8 +161,8 @@ std::size_t nearest_place(const Grid& grid, double displacement) {
 void add_holds(const Recording& recording, const Grid& grid, int discard, std::vector<LocalLine>& lines) {
     for (const HoldScans& hold : grid.holds) {
         if (static_cast<std::size_t>(hold.end) >= recording.scans.size() || hold.begin == hold.end) continue;
-        const Scan& begin = recording.scans[static_cast<std::size_t>(hold.begin)];
-        const Scan& end = recording.scans[static_cast<std::size_t>(hold.end)];
+        const Scan& begin = recording.scans[hold.begin];
+        const Scan& end = recording.scans[hold.end];
         if (end.cycle < discard) continue;
         Eigen::VectorXd values =
             Eigen::VectorXd::Constant(static_cast<Eigen::Index>(observables().size()), not_available);

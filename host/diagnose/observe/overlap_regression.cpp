@@ -56,7 +56,7 @@ std::array<double, 2> shared_remainders(std::size_t grains, std::span<const Cont
         if (is_wall(contacts[k].partner)) continue;
         const double q = remainder[k] * (contacts[k].implied / mean_overlap - 1);
         for (const int grain : {contacts[k].grain, contacts[k].partner}) {
-            Sums& s = of[static_cast<std::size_t>(grain)];
+            Sums& s = of[grain];
             s.r += remainder[k];
             s.rr += remainder[k] * remainder[k];
             s.q += q;
@@ -99,11 +99,10 @@ std::array<double, 2> contact_occurrence(const Recording& recording, const Scan&
     double silent = 0;
     const double largest = *std::ranges::max_element(recording.diameter);
     CellList(scan.position, recording.box, scan.plate_z, largest).for_each_pair([&](int i, int j) {
-        const double a = recording.diameter[static_cast<std::size_t>(i)];
-        const double b = recording.diameter[static_cast<std::size_t>(j)];
+        const double a = recording.diameter[i];
+        const double b = recording.diameter[j];
         const double reach = 0.5 * (a + b) - clear_overlap * 0.5 * a * b / (a + b);
-        const Vec3 between = apart(recording.box, scan.position[static_cast<std::size_t>(i)],
-                                   scan.position[static_cast<std::size_t>(j)]);
+        const Vec3 between = apart(recording.box, scan.position[i], scan.position[j]);
         if (between.squaredNorm() < reach * reach)
             silent += !std::ranges::binary_search(listed, std::pair<int, int>(std::minmax(i, j)));
     });
@@ -136,7 +135,7 @@ std::array<double, 6> wall_overlaps(const Recording& recording, const Scan& scan
     for (const ContactResidual& c : contacts) {
         if (!is_wall(c.partner)) continue;
         const double y = c.residual() - c.cross_contact;
-        const Vec3& at = scan.position[static_cast<std::size_t>(c.grain)];
+        const Vec3& at = scan.position[c.grain];
         switch (wall_of(c.partner)) {
             case Wall::floor:
                 floor.add(Terms<1>(1), y);

@@ -33,16 +33,13 @@ Shown shown_grains(const Recording& recording, int most) {
     if (count > static_cast<std::size_t>(most)) {
         const auto& position = recording.scans.front().position;
         const double middle = recording.box.size_y / 2;
-        const auto away = [&](int grain) {
-            return std::fabs(position[static_cast<std::size_t>(grain)].y() - middle);
-        };
+        const auto away = [&](int grain) { return std::fabs(position[grain].y() - middle); };
         std::nth_element(shown.grains.begin(), shown.grains.begin() + most, shown.grains.end(),
                          [&](int a, int b) { return away(a) < away(b); });
         shown.grains.resize(static_cast<std::size_t>(most));
         std::ranges::sort(shown.grains);
     }
-    for (std::size_t g = 0; g < shown.grains.size(); ++g)
-        shown.place[static_cast<std::size_t>(shown.grains[g])] = static_cast<int>(g);
+    for (std::size_t g = 0; g < shown.grains.size(); ++g) shown.place[shown.grains[g]] = static_cast<int>(g);
     return shown;
 }
 
@@ -75,13 +72,12 @@ Json scan_json(const Recording& recording, const Scan& scan, const Shown& shown)
     for (int a = 0; a < 3; ++a) {
         auto& list = json[axes[a]] = Json::array();
         for (const int grain : shown.grains)
-            list.push_back(rounded(into_cell(now, scan.position[static_cast<std::size_t>(grain)])[a] / mm));
+            list.push_back(rounded(into_cell(now, scan.position[grain])[a] / mm));
     }
     Json grain = Json::array(), partner = Json::array(), force = Json::array();
     for (const auto& contact : scan.contacts) {
-        const int from = shown.place[static_cast<std::size_t>(contact.grain)];
-        const int to = is_wall(contact.partner) ? contact.partner
-                                                : shown.place[static_cast<std::size_t>(contact.partner)];
+        const int from = shown.place[contact.grain];
+        const int to = is_wall(contact.partner) ? contact.partner : shown.place[contact.partner];
         if (from < 0 || (to < 0 && !is_wall(contact.partner))) continue;
         grain.push_back(from), partner.push_back(to), force.push_back(rounded(contact.force.norm() / mN));
     }
@@ -93,8 +89,7 @@ Json setting_json(const ShownPacking& packing, const PackingLimits& limits) {
     const auto& recording = packing.recording;
     const auto shown = shown_grains(recording, limits.max_grains);
     Json diameters = Json::array(), scans = Json::array();
-    for (const int grain : shown.grains)
-        diameters.push_back(rounded(recording.diameter[static_cast<std::size_t>(grain)] / mm));
+    for (const int grain : shown.grains) diameters.push_back(rounded(recording.diameter[grain] / mm));
     for (const auto& scan : recording.scans) scans.push_back(scan_json(recording, scan, shown));
     double top = 0;
     for (const auto& scan : recording.scans) top = std::fmax(top, scan.plate_z);
@@ -126,8 +121,8 @@ void add_forces(const Scan& scan, Forces& forces) {
     for (const auto& contact : scan.contacts) {
         const double force = contact.force.norm() / mN;
         forces.contact.push_back(force);
-        load[static_cast<std::size_t>(contact.grain)] += force;
-        if (!is_wall(contact.partner)) load[static_cast<std::size_t>(contact.partner)] += force;
+        load[contact.grain] += force;
+        if (!is_wall(contact.partner)) load[contact.partner] += force;
     }
     forces.grain.insert(forces.grain.end(), load.begin(), load.end());
 }

@@ -21,7 +21,7 @@ std::string unit(const Convergence& convergence, std::size_t cell) {
 }
 
 std::string name_of(const Convergence& convergence, std::size_t cell) {
-    return std::string(observables()[static_cast<std::size_t>(convergence.cells[cell].observable)].name);
+    return std::string(observables()[convergence.cells[cell].observable].name);
 }
 
 /// "0.55 +- 0.08", ".. *" beyond the limit.
@@ -110,7 +110,7 @@ TextTable table_of_convergence(const Convergence& convergence) {
     for (const CauseErrors& cause : convergence.causes) table.columns.push_back({cause.cause});
     for (int q = 0; q < static_cast<int>(observables().size()); ++q) {
         if (!has_any(convergence, q)) continue;
-        std::vector<std::string> row{std::string(observables()[static_cast<std::size_t>(q)].name)};
+        std::vector<std::string> row{std::string(observables()[q].name)};
         for (const CauseErrors& cause : convergence.causes)
             row.push_back(error_text(convergence, cause, convergence.worst_cell(cause, q)));
         table.rows.push_back(std::move(row));
@@ -169,7 +169,7 @@ nlohmann::ordered_json convergence_figure_values(const Convergence& convergence)
     }
     for (int q = 0; q < static_cast<int>(observables().size()); ++q) {
         if (!has_any(convergence, q)) continue;
-        const std::string name(observables()[static_cast<std::size_t>(q)].name);
+        const std::string name(observables()[q].name);
         Json row{{"observable", name}, {"words", words_of(name)}, {"errors", Json::array()}};
         for (const CauseErrors& cause : convergence.causes) {
             const int cell = convergence.worst_cell(cause, q);
