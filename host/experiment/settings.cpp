@@ -4,13 +4,13 @@
 #include <toml++/toml.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
 
 #include "core/container.h"
 #include "core/input_file.h"
+#include "scene/keys.h"
 #include "scene/list_tables.h"
 #include "scene/packing_fields.h"
 #include "scene/programme_text.h"
@@ -20,44 +20,13 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+/// A number >= 0 of experiment.toml that scenes do not have.
+Key own_key(std::string_view name, double highest, std::string_view unit) {
+    return {name, MemberOf<double>(nullptr), unit, {0, highest}, Scope::run, {}};
+}
 
-/// A number in experiment.toml with its allowed range.
-struct Setting {
-    std::string_view key;
-    double low, high;
-    bool low_excluded;
-    std::string_view unit;
-};
-
-constexpr Setting materials[] = {
-    {"grains.youngs_modulus", 0, 1e15, true, "Pa"},
-    {"grains.poisson_ratio", 0, 0.5, false, ""},
-    {"grains.excess_density", -1e5, 1e5, false, "kg/m3"},
-    {"grains.friction", 0, 10, false, ""},
-    {"grains.restitution", 0, 1, true, ""},
-    {"walls.youngs_modulus", 0, 1e15, true, "Pa"},
-    {"walls.friction", 0, 10, false, ""},
-};
-constexpr Setting measurements[] = {
-    {"measurement.position_error", 0, 1, false, "m"},
-    {"measurement.diameter_error", 0, 1, false, "m"},
-    {"measurement.force_error", 0, 10, false, ""},
-    {"measurement.force_threshold", 0, infinity, false, "N"},
-};
-constexpr Setting plate_start{"plate.start", 0, 100, true, "m"};
-constexpr Setting plate_speed{"plate.speed", 0, 1000, true, "m/s"};
-constexpr Setting plate_pause{"plate.pause", 0, 1e6, false, "s"};
-constexpr Setting plate_hold{"plate.hold", 0, 1e6, false, "s"};
-constexpr Setting container_radius{"container.radius", 0, 10, true, "m"};
 constexpr std::size_t longest_key = 1000;  // in --set
 constexpr double largest_box = 20;         // [m]; a larger one was given in millimetres
-
-std::string range_text(const Setting& setting) {
-    return fmt::format("a number {} {}{}{}", setting.low_excluded ? ">" : ">=", setting.low,
-                       std::isinf(setting.high) ? "" : fmt::format(" and <= {}", setting.high),
-                       setting.unit.empty() ? "" : fmt::format(" [{}]", setting.unit));
-}
 
 class Reader {
 public:
@@ -68,19 +37,22 @@ public:
         if (name && !name->is_string()) problem(*name, "name must be a text");
         if (name) experiment.name = name->value_or(std::string());
         read_container(root, experiment.recording.box);
-        experiment.recording.plate_start = number(root, plate_start).value_or(std::nan(""));
-        experiment.plate_speed = number(root, plate_speed);
-        experiment.plate_pause = number(root, plate_pause).value_or(0);
-        experiment.plate_hold = number(root, plate_hold).value_or(0);
-        for (const Setting& setting : materials)
-            if (const auto value = number(root, setting))
-                experiment.materials[std::string(setting.key)] = *value;
-        double* const errors[] = {&experiment.measurement.position_error,
-                                  &experiment.measurement.diameter_error, &experiment.measurement.force_error,
-                                  &experiment.measurement.force_threshold};
-        for (std::size_t i = 0; i < std::size(errors); ++i)
-            *errors[i] = number(root, measurements[i]).value_or(0);
-        for (const Setting& setting : materials) read_sigma(root, setting, experiment);
+        experiment.recording.plate_start = number(root, *find_key("plate.start")).value_or(std::nan(""));
+        experiment.plate_speed = number(root, *find_key("plate.speed"));
+        experiment.plate_pause = number(root, own_key("plate.pause", 1e6, "s")).value_or(0);
+        experiment.plate_hold = number(root, own_key("plate.hold", 1e6, "s")).value_or(0);
+        for (const std::string& key : material_keys()) {
+            if (const auto value = number(root, *find_key(key))) experiment.materials[key] = *value;
+            read_sigma(root, *find_key(key), experiment);
+        }
+        Measurement& errors = experiment.measurement;
+        const auto error = [&](std::string_view name, double highest, std::string_view unit) {
+            return number(root, own_key(name, highest, unit)).value_or(0);
+        };
+        errors.position_error = error("measurement.position_error", 1, "m");
+        errors.diameter_error = error("measurement.diameter_error", 1, "m");
+        errors.force_error = error("measurement.force_error", 10, "");
+        errors.force_threshold = error("measurement.force_threshold", 1e9, "N");
         read_programme(root, experiment);
         report_unknown(root, "");
     }
@@ -93,15 +65,14 @@ private:
 
     void known(std::string_view key) { known_.insert(std::string(key)); }
 
-    std::optional<double> number(const toml::table& root, const Setting& setting) {
-        known(setting.key);
-        const auto node = root.at_path(setting.key);
+    std::optional<double> number(const toml::table& root, const Key& key) {
+        known(key.name);
+        const auto node = root.at_path(key.name);
         if (!node) return std::nullopt;
         const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-        if (value && std::isfinite(*value) && *value <= setting.high &&
-            (setting.low_excluded ? *value > setting.low : *value >= setting.low))
-            return value;
-        problem(*node.node(), fmt::format("{} must be {}", setting.key, range_text(setting)));
+        if (value && key.range.contains(*value)) return value;
+        problem(*node.node(),
+                fmt::format("{} must be {}, got {}", key.name, description(key), shown(*node.node())));
         return std::nullopt;
     }
 
@@ -123,9 +94,9 @@ private:
     }
 
     void read_radius(const toml::table& root, Box& box) {
-        const auto radius = number(root, container_radius);
+        const auto radius = number(root, *find_key("container.radius"));
         if (radius) box.size_x = box.size_y = 2 * *radius;
-        if (!radius && !root.at_path(container_radius.key))
+        if (!radius && !root.at_path("container.radius"))
             problems_.add(file_,
                           "container.radius must be the inner radius of the cylinder [m], such as 0.06");
     }
@@ -158,13 +129,13 @@ private:
 
     /// `[uncertainty]` contains full names of keys ("walls.friction"), or for grains the last word
     /// ("friction").
-    void read_sigma(const toml::table& root, const Setting& setting, Experiment& experiment) {
-        std::vector<std::string> names{fmt::format("uncertainty.{}", setting.key)};
-        if (setting.key.starts_with("grains."))
-            names.push_back(fmt::format("uncertainty.{}", setting.key.substr(7)));
+    void read_sigma(const toml::table& root, const Key& key, Experiment& experiment) {
+        std::vector<std::string> names{fmt::format("uncertainty.{}", key.name)};
+        if (key.name.starts_with("grains."))
+            names.push_back(fmt::format("uncertainty.{}", last_part(key.name)));
         for (const std::string& name : names)
-            if (const auto sigma = number(root, {name, 0, infinity, false, setting.unit}))
-                experiment.uncertainty[std::string(setting.key)] = *sigma;
+            if (const auto sigma = number(root, own_key(name, 1e15, key.unit)))
+                experiment.uncertainty[std::string(key.name)] = *sigma;
     }
 
     /// Reads the stages as in a scene, into the recording's parameters as for a simulation.
@@ -235,11 +206,9 @@ private:
 }  // namespace
 
 const std::vector<std::string>& material_keys() {
-    static const std::vector<std::string> keys = [] {
-        std::vector<std::string> all;
-        for (const Setting& setting : materials) all.emplace_back(setting.key);
-        return all;
-    }();
+    static const std::vector<std::string> keys{
+        "grains.youngs_modulus", "grains.poisson_ratio", "grains.excess_density", "grains.friction",
+        "grains.restitution",    "walls.youngs_modulus", "walls.friction"};
     return keys;
 }
 

@@ -188,22 +188,24 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     settings, spoiled_experiment,
-    ::testing::Values(Spoiled{"experiment.toml", "[0.04, 0.03]", "[40.0, 30.0]",
-                              "experiment.toml:3: box.size must be > 0 and <= 20 [m], got 40"},
-                      Spoiled{"experiment.toml", "[0.04, 0.03]", "[0.04]",
-                              "experiment.toml:3: box.size must be the inner width and depth"},
-                      Spoiled{"experiment.toml", "size", "sizes", "experiment.toml: box.size must be"},
-                      Spoiled{"experiment.toml", "0.5", "0.6",
-                              "experiment.toml:6: grains.poisson_ratio must be a number >= 0 and <= 0.5"},
-                      Spoiled{"experiment.toml", "23300.0", "\"soft\"",
-                              "experiment.toml:5: grains.youngs_modulus must be a number > 0"},
-                      Spoiled{"experiment.toml", "friction", "fricton",
-                              "experiment.toml:7: grains.fricton is not a key of an experiment"},
-                      Spoiled{"experiment.toml", "walls.youngs", "wall.youngs",
-                              "experiment.toml:12: uncertainty.wall is not a key"},
-                      Spoiled{"experiment.toml", "500.0", "-1.0",
-                              "experiment.toml:11: uncertainty.youngs_modulus must be a number >= 0"},
-                      Spoiled{"experiment.toml", "[grains]", "[grains", "experiment.toml:4: "}));
+    ::testing::Values(
+        Spoiled{"experiment.toml", "[0.04, 0.03]", "[40.0, 30.0]",
+                "experiment.toml:3: box.size must be > 0 and <= 20 [m], got 40"},
+        Spoiled{"experiment.toml", "[0.04, 0.03]", "[0.04]",
+                "experiment.toml:3: box.size must be the inner width and depth"},
+        Spoiled{"experiment.toml", "size", "sizes", "experiment.toml: box.size must be"},
+        Spoiled{"experiment.toml", "0.5", "0.6",
+                "experiment.toml:6: grains.poisson_ratio must be a number between 0 and 0.5, got 0.6"},
+        Spoiled{"experiment.toml", "23300.0", "\"soft\"",
+                "experiment.toml:5: grains.youngs_modulus must be a number > 0"},
+        Spoiled{"experiment.toml", "friction", "fricton",
+                "experiment.toml:7: grains.fricton is not a key of an experiment"},
+        Spoiled{"experiment.toml", "walls.youngs", "wall.youngs",
+                "experiment.toml:12: uncertainty.wall is not a key"},
+        Spoiled{"experiment.toml", "500.0", "-1.0",
+                "experiment.toml:11: uncertainty.youngs_modulus must be a number between 0 and 1e+15 [Pa], "
+                "got -1"},
+        Spoiled{"experiment.toml", "[grains]", "[grains", "experiment.toml:4: "}));
 
 TEST(read_experiment, all_problems_are_reported_at_once_up_to_a_limit) {
     ExperimentFolder folder;
