@@ -168,12 +168,9 @@ void write_files(const FromRunCommand& command, const Experiment& experiment) {
     std::optional<FolderLock> lock;
     if (!fs::exists(out / experiment_toml)) lock.emplace(open_output_folder(out));
     replace_file(out / sums_file, sums);  // even if it exists: this syncs the folder
-    std::vector<std::string> names;
-    for (const auto& [name, bytes] : files) names.push_back(name);
-    std::partition(names.begin(), names.end(),
-                   [](const std::string& name) { return name != experiment_toml; });
-    for (const std::string& name : names)
-        if (!fs::exists(out / name)) replace_file(out / name, files.at(name));
+    for (const bool last : {false, true})
+        for (const auto& [name, bytes] : files)
+            if ((name == experiment_toml) == last && !fs::exists(out / name)) replace_file(out / name, bytes);
     for (const auto& [name, bytes] : files)
         if (read_file(out / name) != bytes)
             throw RunError((out / name).string() + ": what was written is not what is read back");
