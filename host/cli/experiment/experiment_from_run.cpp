@@ -5,9 +5,11 @@
 #include <optional>
 
 #include "cli/experiment/experiment.h"
+#include "cli/shell/commands.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/standard_streams.h"
 #include "core/atomic_file.h"
+#include "core/container.h"
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "experiment/instrument.h"
@@ -111,7 +113,7 @@ void expect_all_scans(const Recording& truth) {
 }
 
 void warn_of_start(const Recording& truth) {
-    if (follows_programme(truth)) expect_all_scans(truth);
+    if (follows_programme(truth) && !is_cell(truth.box)) expect_all_scans(truth);  // cells are refused later
     if (!truth.species_names.empty())
         throw InputError(
             "the run must be one of grains of one material, got one of [[species]]: experiments state one "
@@ -223,21 +225,20 @@ void add_unstated_errors(CLI::App& sub, Instrument& instrument) {
     add("--force-lag", instrument.force_lag, "M",
         "Unstated error: the top force is that of an earlier plate position, this far back along its path "
         "[m]",
-        CLI::NonNegativeNumber);
+        at_least_zero());
     add("--guide-friction", instrument.guide_friction, "FRACTION",
         "Unstated error: friction of the plate's guide, which the load cell also reads, over the maximum top "
         "force",
         CLI::Range(0.0, 0.5));
     add("--force-saturation", instrument.force_saturation, "PER_N",
-        "Unstated error: a contact force f is read as f/(1 + a f), with this a [1/N]",
-        CLI::NonNegativeNumber);
+        "Unstated error: a contact force f is read as f/(1 + a f), with this a [1/N]", at_least_zero());
 }
 
 }  // namespace
 
 void add_measurement_options(CLI::App& command, Measurement& measurement) {
     const auto add = [&](const char* option, double& value, const char* unit, const char* help,
-                         const CLI::Validator& check = CLI::NonNegativeNumber) {
+                         const CLI::Validator& check = at_least_zero()) {
         command.add_option(option, value, help)->type_name(unit)->check(check);
     };
     add("--position-error", measurement.position_error, "M",

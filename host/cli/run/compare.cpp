@@ -76,7 +76,8 @@ void add_compare(CLI::App& app, int&) {
         ->type_name("DIR");
     sub->add_option("--touch-force", command->figures.touch_force,
                     "For errf, use only displacements at which the reference's top force is above this [N]")
-        ->type_name("N");
+        ->type_name("N")
+        ->check(at_least_zero());
     add_figure_options(*sub, command->figures);
     sub->add_flag("--markdown", command->markdown, "Print Markdown");
     sub->footer(

@@ -74,10 +74,10 @@ void add_converge(CLI::App& app, int&) {
         ->check(CLI::Range(0.0, 1.0));
     sub->add_option("--force-limit", command->options.limits.force,
                     "Largest relative error allowed in forces")
-        ->check(CLI::PositiveNumber);
+        ->check(above_zero());
     sub->add_option("--sd-limit", command->options.limits.deviations,
                     "Largest error allowed in other observables, in standard deviations over the copies")
-        ->check(CLI::PositiveNumber);
+        ->check(above_zero());
     sub->add_option("--seed", command->options.seed, "Seed of the jitter");
     add_device_option(*sub, command->device);
     sub->footer(

@@ -81,12 +81,14 @@ void add_figure_options(CLI::App& command, FigureOptions& figures) {
     command
         .add_option("--displacement", figures.distribution_displacement,
                     "Draw the force distribution at the recorded plate displacement nearest to this one [m]")
-        ->type_name("M");
+        ->type_name("M")
+        ->check(at_least_zero());
     command
         .add_option("--threshold", figures.threshold,
                     "Contact force below which contacts are not counted in the figure of Z if there is "
                     "no reference [N]")
-        ->type_name("N");
+        ->type_name("N")
+        ->check(at_least_zero());
 }
 
 }  // namespace mcdem::cli

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cli/shell/commands.h"
 #include "core/errors.h"
 #include "ensemble/reference.h"
 
@@ -80,7 +81,7 @@ void add_reference_options(CLI::App& command, ReferenceOptions& options, const s
             "--discard", options.discard,
             "Number of first cycles of the experiment to leave out; runs state their own as protocol.discard")
         ->type_name("CYCLES")
-        ->check(CLI::NonNegativeNumber);
+        ->check(at_least_zero());
 }
 
 }  // namespace mcdem::cli

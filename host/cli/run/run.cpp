@@ -12,6 +12,7 @@
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
 #include "cli/shell/subprocess.h"
+#include "core/container.h"
 #include "core/errors.h"
 #include "core/parameters.h"
 #include "core/version.h"
@@ -80,7 +81,21 @@ void print_summary(const Run& run, const RunSummary& summary, std::size_t failed
                   duration_text(summary.seconds), summary.grain_steps * 1e-6 / summary.seconds);
     print_out("\n");
     const auto models = model_table(with_programme(group_by_setting(run), false));
-    if (models_vary(models)) print_out("\n{}", to_text(table_of_models(models), TableFormat::terminal));
+    if (models_vary(models))
+        print_out("\n{}", to_text(table_of_models(models), TableFormat::terminal));
+    else if (models.rows.size() == 1 && models.rows.front().top_force.available())
+        print_out("force on the plate: {} N at {:.2f} mm\n", with_error(models.rows.front().top_force, 2),
+                  1e3 * models.rows.front().reached.value_or(models.displacement));
+}
+
+void warn_of_no_contact(const Run& run) {
+    const auto untouched = std::ranges::count_if(run.recordings, [](const Recording& recording) {
+        return !recording.failure && !is_cell(recording.box) &&
+               std::ranges::none_of(recording.scans, [](const Scan& scan) { return scan.top_force() > 0; });
+    });
+    if (untouched > 0)
+        spdlog::warn("the plate touched no grain at any scan of {} of {} replicas: lower plate.end",
+                     untouched, run.recordings.size());
 }
 
 /// The plate of such a replica stands until the packing settles.
@@ -119,6 +134,7 @@ int report_run(const RunCommand& command, const RunSummary& summary) {
     std::size_t failed = 0;
     for (const auto& recording : run.recordings) failed += recording.failure.has_value();
     print_summary(run, summary, failed);
+    warn_of_no_contact(run);
     warn_of_unsettled(run);
     std::vector<std::filesystem::path> figures;
     if (!command.no_figures) figures = draw_run(command.out);

@@ -32,6 +32,10 @@ void add_experiment(CLI::App& app, int& exit_code);
 void add_completion(CLI::App& app, int& exit_code);
 void add_manual(CLI::App& app, int& exit_code);
 
+/// Checks of finite numbers. CLI11's own checks print the largest double with its 309 digits.
+const CLI::Validator& at_least_zero();
+const CLI::Validator& above_zero();
+
 /// The subcommands that the help lists.
 std::vector<const CLI::App*> listed_commands(const CLI::App& command);
 
