@@ -18,11 +18,11 @@ struct Coefficients {
 };
 
 // Printed by tests/truth/fit_hyperelastic_sphere.py.
-constexpr double coupling = 1.3148, hertz = 0.8988, size = 1.3148;
+constexpr double coupling = 1.4835, hertz = 1.2467, size = 2.5925;
 constexpr std::array<Coefficients, 3> fitted{{
-    {0.30, {-0.0128, 0.3940, -0.6893}, 0.3061, -0.0091},
-    {0.40, {-0.0085, 0.2214, -0.4386}, 0.2282, 0.4952},
-    {0.49, {-0.0067, 0.1080, -0.2533}, 0.1588, 0.8371},
+    {0.30, {-0.0078, 0.4401, -0.7491}, 0.1962, 0.7717},
+    {0.40, {-0.0238, 0.3723, -0.6152}, 0.1458, 1.2901},
+    {0.49, {-0.0186, 0.2257, -0.3962}, 0.0457, 1.0354},
 }};
 
 /// Linear interpolation between the two neighbouring fitted Poisson ratios.

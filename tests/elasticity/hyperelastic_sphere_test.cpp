@@ -85,7 +85,8 @@ double mean_pressure(const Load& load) {
 
 std::optional<reference::PlateSolution> forces(ContactModel model, double poisson_ratio,
                                                const std::vector<Plate>& plates) {
-    return solve_plates(surface_law(model, poisson_ratio, 1), poisson_ratio, plates);
+    constexpr double largest_overlap = 1.2;  // Hertz overlaps are large in filled cells
+    return solve_plates(surface_law(model, poisson_ratio, 1), poisson_ratio, plates, largest_overlap);
 }
 
 /// Relative to the origin at which the forces of a model on the sphere cancel, close to that of finite
@@ -135,27 +136,40 @@ void print(const char* what, const WorstErrors& worst) {
         fmt::print("{:19}{:6.1f}{:6.1f}{:6.1f}\n", name, 100 * error[0], 100 * error[1], 100 * error[2]);
 }
 
+/// The least resolved contacts: fourteen plates at an overlap of 0.05, where finer meshes change the forces
+/// by 1.4 %, and the coarser meshes of arrangements without symmetry (tests/truth/README.md).
+double bar_at_small_overlap(const std::string& name) {
+    return name == "fourteen" ? 0.042 : name.starts_with("asymmetric") ? 0.035 : 0.03;
+}
+
+// Seventeen of the arrangements are in the fit, twenty-one are not (tests/truth/fit_hyperelastic_sphere.py).
 TEST(HyperelasticSphere, AgreesWithFiniteElementsInEveryArrangement) {
     print("elastic sphere, P to 0.12", worst_errors(ContactModel::elastic_sphere, 0, 0.12));
     const auto worst = worst_errors(ContactModel::hyperelastic_sphere, 0, 0.12);
     print("P to 0.12", worst);
-    ASSERT_EQ(worst.size(), 21u);
+    ASSERT_EQ(worst.size(), 38u);
     for (const auto& [name, error] : worst) {
-        EXPECT_LT(error[0], name == "fourteen" ? 0.045 : 0.03) << name;
-        EXPECT_LT(error[1], 0.03) << name;
+        EXPECT_LT(error[0], bar_at_small_overlap(name)) << name;
+        // In random_eight_c the force on plates 45 degrees apart is too small.
+        EXPECT_LT(error[1], name == "random_eight_c" ? 0.04 : 0.03) << name;
         EXPECT_LT(error[2], 0.03) << name;
     }
 }
 
-// Forces are steep there: d ln F / d ln overlap is 3 to 10.
+/// The law fits one load of either arrangement badly (P = 0.27 and 0.16).
+double bar_in_nearly_filled_cell(const std::string& name) {
+    return name == "random_ten" ? 0.09 : name == "random_eight_c" ? 0.06 : 0.045;
+}
+
+// Forces are steep there: d ln F / d ln overlap is up to 7.
 TEST(HyperelasticSphere, AgreesWithFiniteElementsInNearlyFilledCells) {
     const auto nearly = worst_errors(ContactModel::hyperelastic_sphere, 0.12, 0.3);
     print("P 0.12 to 0.3", nearly);
     for (const auto& [name, error] : nearly)
-        EXPECT_LT(std::ranges::max(error), name == "fourteen" ? 0.08 : 0.05) << name;
+        EXPECT_LT(std::ranges::max(error), bar_in_nearly_filled_cell(name)) << name;
     const auto filled = worst_errors(ContactModel::hyperelastic_sphere, 0.3, 1);
     print("P 0.3 to 1", filled);
-    for (const auto& [name, error] : filled) EXPECT_LT(std::ranges::max(error), 0.15) << name;
+    for (const auto& [name, error] : filled) EXPECT_LT(std::ranges::max(error), 0.21) << name;
 }
 
 TEST(HyperelasticSphere, EqualsTheElasticSphereAtSmallOverlaps) {
@@ -282,7 +296,7 @@ TEST(HyperelasticSphere, PlatesReplaceNeighbouringGrains) {
         if (cells[0] == "unequal") {
             const double found = solve_force(force / 3, 3 * force,
                                              [&](double f) { return law.of_two(f, parameter) - overlap; });
-            EXPECT_NEAR(found / force, 1, 0.015) << where;
+            EXPECT_NEAR(found / force, 1, 0.01) << where;
             continue;
         }
         const auto force_at = [&](double f_side) {
@@ -292,8 +306,8 @@ TEST(HyperelasticSphere, PlatesReplaceNeighbouringGrains) {
         const double found_side = solve_force(side_force / 3, 3 * side_force, [&](double f) {
             return law.of_three(force_at(f), f).second - side;
         });
-        EXPECT_NEAR(force_at(found_side) / force, 1, 0.025) << where;
-        EXPECT_NEAR(found_side / side_force, 1, 0.025) << where;
+        EXPECT_NEAR(force_at(found_side) / force, 1, 0.02) << where;
+        EXPECT_NEAR(found_side / side_force, 1, 0.02) << where;
     }
 }
 

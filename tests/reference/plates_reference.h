@@ -19,10 +19,10 @@ struct PlateSolution {
     std::vector<double> force, displacement;
 };
 
-/// Empty if the iteration diverges: there is no static solution, or an overlap exceeds 0.9.
+/// Empty if the iteration diverges: there is no static solution, or an overlap exceeds `hopeless`.
 inline std::optional<PlateSolution> solve_plates(const SurfaceLaw& law, double poisson_ratio,
-                                                 const std::vector<Plate>& plates) {
-    constexpr double hopeless = 0.9, settled = 1e-11, relaxation = 0.5;
+                                                 const std::vector<Plate>& plates, double hopeless = 0.9) {
+    constexpr double settled = 1e-11, relaxation = 0.5;
     Grain grain;
     grain.poisson_ratio = poisson_ratio;
     std::vector<double> delta;

@@ -81,10 +81,3 @@ class Law:
         points = -self.point @ force
         sizes = -(2 / 5 * self.size @ (force * a2) + 2 / 3 * a2 * (self.size @ force))
         return points + sizes, force @ points / 2 + 3 / 8 * force @ sizes
-
-    def shear_by_others(self, force):
-        """Overlaps without uniform compression, by point contacts and by their sizes, and the energies of both."""
-        a2 = self.radius(force)**2
-        points = -self.point @ force - self.uniform * (force.sum() - force)
-        sizes = -(2 / 5 * self.size @ (force * a2) + 2 / 3 * a2 * (self.size @ force))
-        return points, sizes, force @ points / 2, 3 / 8 * force @ sizes

@@ -25,6 +25,11 @@ SYMMETRIC = {
     'fourteen': ([[1, 1, 1], X, Y, Z], [1, 1, 1, 1]),
     'two_plus_four': ([Z, X, Y], [1, .5, .5]),
     'unequal_pairs': ([Z, X, Y], [1, .75, .4]),
+    'eight_plus_two': ([[1, 1, 1], Z], [1, .6]),
+    'unequal_fours': (FCC, [1, .85, .7]),
+    'eight_plus_pairs': ([[1, 1, 1.3], X, Y], [1, .8, .7]),
+    'two_fours': ([[1.6, 0, 1], [0, 1, .8]], [1, .8]),
+    'four_plus_pairs': ([[1, 0, .8], Y, Z], [1, .7, .55]),
 }
 # Random arrangements, symmetric about x = 0 and y = 0 only: numbers of plates on the z axis, in either plane,
 # elsewhere.
@@ -34,11 +39,22 @@ RANDOM = {
     'random_seven': ((1, 1, 1), 3),
     'random_eight': ((0, 2, 1), 4),
     'random_nine': ((1, 0, 2), 5),
+    'random_nine_b': ((1, 2, 1), 31),
+    'random_ten': ((0, 1, 2), 32),
+    'random_eight_b': ((0, 0, 2), 33),
+    'random_seven_b': ((1, 1, 1), 34),
+    'random_nine_c': ((1, 0, 2), 35),
+    'random_ten_b': ((0, 1, 2), 36),
+    'random_nine_d': ((1, 2, 1), 37),
+    'random_eight_c': ((0, 2, 1), 38),
+    'random_seven_c': ((1, 1, 1), 51),
+    'random_nine_e': ((1, 0, 2), 52),
 }
 # Random arrangements without symmetry: number of plates, and seed.
 ASYMMETRIC = {f'asymmetric_{name}': (count, seed) for seed, (name, count) in
               enumerate((('five', 5), ('six', 6), ('seven', 7), ('eight', 8), ('nine', 9)), 11)}
-ASYMMETRIC |= {'asymmetric_five_b': (5, 21), 'asymmetric_seven_b': (7, 23)}
+ASYMMETRIC |= {'asymmetric_five_b': (5, 21), 'asymmetric_seven_b': (7, 23),
+               'asymmetric_eight_b': (8, 41), 'asymmetric_six_b': (6, 53)}
 OVERLAPS = (.025, .05, .075, .1, .125, .15, .175, .2)
 POISSON_RATIOS = (.3, .4, .49)
 
