@@ -1,6 +1,7 @@
 #include "ensemble/calibrate_scene.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -9,9 +10,12 @@
 #include "core/errors.h"
 #include "core/names.h"
 #include "core/parameters.h"
+#include "ensemble/diagnose_experiment.h"
 #include "ensemble/make_packings.h"
+#include "experiment/experiment.h"
 #include "metrics/top_force.h"
 #include "scene/legs.h"
+#include "scene/packing_fields.h"
 
 namespace mcdem::inline ensemble {
 namespace {
@@ -91,6 +95,21 @@ private:
     Estimate last_;
 };
 
+/// Materials that the reference states and the scene does not have: the calibrated parameter would make up
+/// for them.
+void note_other_materials(const Scene& scene, const Replicas& reference, const CalibrateOptions& options) {
+    std::map<std::string, double> stated;
+    for (const std::string& key : material_keys())
+        if (const auto value = to_number(value_of(reference.front()->parameters, key))) stated[key] = *value;
+    if (options.model != ContactModel::mc_dem) stated.erase("grains.youngs_modulus");  // it is searched for
+    if (const auto others = other_materials(scene.replicas.front(), stated); !others.empty())
+        options.on_note(
+            fmt::format("the reference has {}: the calibrated value makes up for the difference; change the "
+                        "scene with --set if the "
+                        "reference is right",
+                        fmt::join(others, ", ")));
+}
+
 }  // namespace
 
 std::vector<Replica> calibration_replicas(const Scene& scene, ContactModel model) {
@@ -126,6 +145,7 @@ bool SceneCalibration::knows_scatter() const {
 SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Replicas& reference,
                                  const CalibrateOptions& options) {
     expect_plain_strokes(scene, "a calibration");
+    if (!reference.empty()) note_other_materials(scene, reference, options);
     const auto reference_levels = group_levels(reference);
     SceneCalibration result;
     result.displacement = full_stroke(reference_levels, reference);

@@ -18,6 +18,7 @@ struct CalibrateOptions {
     CalibrationOptions search;
     /// Called after every interval of round `round` (from 0), with the completed fraction of the round.
     std::function<void(int round, double fraction)> on_progress = [](int, double) {};
+    std::function<void(const std::string& note)> on_note = [](const std::string&) {};
 };
 
 struct SceneCalibration {

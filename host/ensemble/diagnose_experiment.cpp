@@ -54,7 +54,8 @@ public:
           plan_(std::move(plan.library)) {}
 
     Diagnosis run() {
-        if (const auto others = other_materials(model().replica, experiments_.front()); !others.empty())
+        if (const auto others = other_materials(model().replica, experiments_.front().materials);
+            !others.empty())
             options_.on_note(
                 fmt::format("experiment.toml states {}, but simulations use the values of the scene; change "
                             "them with --set if the experiment is right",

@@ -44,8 +44,8 @@ Experiment compared_cycles(const Scene& scene, Experiment experiment);
 Model model_of(const Scene& scene, const Experiment& experiment);
 
 /// Simulations have the materials of the scene: "grains.youngs_modulus = 30000 (scene: 23300)" for each that
-/// the experiment states and the scene does not have. With several species, which have their own, none.
-std::vector<std::string> other_materials(const Replica& replica, const Experiment& experiment);
+/// is stated and that the scene does not have. With several species, which have their own, none.
+std::vector<std::string> other_materials(const Replica& replica, const std::map<std::string, double>& stated);
 
 /// Positions of the experiment's grains at its first frame.
 Packing start_packing(const Experiment& experiment);

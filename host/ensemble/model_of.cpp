@@ -80,14 +80,15 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     return model;
 }
 
-std::vector<std::string> other_materials(const Replica& replica, const Experiment& experiment) {
+std::vector<std::string> other_materials(const Replica& replica,
+                                         const std::map<std::string, double>& stated) {
     std::vector<std::string> list;
     if (!replica.species.empty()) return list;
-    for (const auto& [name, stated] : experiment.materials) {
+    for (const auto& [name, material] : stated) {
         const std::string used = value_of(replica.parameters, name);
-        if (const double value = to_number(used).value_or(stated);
-            std::abs(value - stated) > 1e-6 * std::abs(stated))
-            list.push_back(fmt::format("{} = {} (scene: {})", name, stated, used));
+        if (const double value = to_number(used).value_or(material);
+            std::abs(value - material) > 1e-6 * std::abs(material))
+            list.push_back(fmt::format("{} = {} (scene: {})", name, material, used));
     }
     return list;
 }

@@ -70,6 +70,7 @@ py::object calibrate(const Scene& scene, const py::object& reference, const std:
         watch.show_progress((round + part) / rounds);
         if (watch.stop_wanted()) throw Interrupted();
     };
+    options.on_note = [&](const std::string& note) { watch.warn(note); };
     std::string text;
     try {
         const py::gil_scoped_release others_go_on;

@@ -65,14 +65,20 @@ TEST(CalibrateScene, FindsTheModulusForAModelWithoutGamma) {
         return scene;
     };
     const Scene made_with = of_modulus(26e3);
-    const auto reference = simulate(device, made_with, make_packings(made_with), 1000);
+    auto reference = simulate(device, made_with, make_packings(made_with), 1000);
+    reference.front().parameters = {{"grains.youngs_modulus", "26000"}, {"grains.friction", "0.5"}};
     CalibrateOptions options;
     options.model = ContactModel::hyperelastic_sphere;
     options.search.tolerance = 1e-3;
+    std::vector<std::string> notes;
+    options.on_note = [&](const std::string& note) { notes.push_back(note); };
     const auto result = calibrate_scene(device, of_modulus(20e3), replicas_of(reference), options);
     EXPECT_EQ(result.youngs_modulus, 20e3);
     EXPECT_NEAR(result.found.gamma, 1.3, 3e-3);
     EXPECT_TRUE(result.found.converged);
+    EXPECT_THAT(notes,
+                testing::ElementsAre(testing::HasSubstr("the reference has grains.friction = 0.5 (scene:")))
+        << "but not the modulus, which is searched for";
     options.bracket = {0.5, 0.6};
     EXPECT_THAT([&] { calibrate_scene(device, of_modulus(20e3), replicas_of(reference), options); },
                 testing::ThrowsMessage<RunError>(testing::HasSubstr("E over the scene's = 0.6")));

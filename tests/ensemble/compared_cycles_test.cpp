@@ -78,11 +78,11 @@ TEST(OtherMaterials, AreStatedByTheExperimentAndNotTheScenes) {
     const Replica replica =
         small_scene({"grains.youngs_modulus=23300", "grains.friction=0.1"}).replicas.front();
     Experiment experiment;
-    EXPECT_THAT(other_materials(replica, experiment), testing::IsEmpty());
+    EXPECT_THAT(other_materials(replica, experiment.materials), testing::IsEmpty());
     experiment.materials = {{"grains.youngs_modulus", 23300}, {"grains.friction", 0.1}};
-    EXPECT_THAT(other_materials(replica, experiment), testing::IsEmpty());
+    EXPECT_THAT(other_materials(replica, experiment.materials), testing::IsEmpty());
     experiment.materials["grains.youngs_modulus"] = 3e4;
-    EXPECT_THAT(other_materials(replica, experiment),
+    EXPECT_THAT(other_materials(replica, experiment.materials),
                 testing::ElementsAre("grains.youngs_modulus = 30000 (scene: 23300)"));
 }
 

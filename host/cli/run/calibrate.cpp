@@ -68,6 +68,7 @@ void calibrate(CalibrateCommand& command) {
         command.options.on_progress = [&](int round, double fraction) {
             progress.show((round + fraction) / rounds);
         };
+        command.options.on_note = [&](const std::string& note) { spdlog::warn("{}", note); };
         result = calibrate_scene(device, scene, reference.setting.replicas, command.options);
     }
     print_calibration(result);
