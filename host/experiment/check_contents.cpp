@@ -69,7 +69,7 @@ void describe_contacts(const Recording& recording, Findings& findings) {
                               recording.scans.size(),
                               names.empty() ? "no wall" : fmt::format("{}", fmt::join(names, ", "))));
     findings.note(contacts_file,
-                  "each contact is listed once: that it acts alike on both sides is taken for granted");
+                  "each contact is listed once, so it cannot be checked that both sides agree");
 }
 
 void describe_settings(const Experiment& experiment, Findings& findings) {

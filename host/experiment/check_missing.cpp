@@ -50,10 +50,10 @@ void missing_frames(const Recording& recording, Findings& findings) {
 void missing_positions(const Recording& recording, Findings& findings) {
     if (recording.diameter.empty())
         return findings.missing(grains_file,
-                                "diameters and positions: simulations start from another packing drawn at "
-                                "random, and what overlap "
-                                "belongs to which force is not known, which tells stiffness, cross-contact "
-                                "effects and adhesion apart");
+                                "diameters and positions: a diagnosis must start from the positions of frame "
+                                "0, and other simulations start from a generated packing. Without them it is "
+                                "not known which overlap belongs to which force, which tells stiffness, "
+                                "cross-contact effects and adhesion apart");
     const auto without = [](const Scan& scan) { return scan.position.empty(); };
     const auto scans = std::ranges::count_if(recording.scans, without);
     if (scans > 0)

@@ -71,7 +71,7 @@ void expect_experiment(const fs::path& folder) {
     if (!fs::is_directory(status))
         throw InputError(folder.string() + ": must be an experiment's folder, got a file");
     if (!fs::exists(fs::symlink_status(settings, error)))
-        throw InputError(folder.string() + ": is no experiment, for it holds no experiment.toml");
+        throw InputError(folder.string() + ": is not an experiment: it contains no experiment.toml");
     if (!fs::is_regular_file(settings, error) || fs::file_size(settings, error) > largest_settings || error)
         throw InputError(settings.string() + ": must be a text of at most 1 MB that can be read" +
                          (error ? ": " + error.message() : ""));

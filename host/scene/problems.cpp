@@ -53,8 +53,7 @@ void FileProblems::report() const {
     if (!empty()) throw InputError(lines());
 }
 
-std::string shortened(const std::string& text) {
-    constexpr std::size_t longest = 80;
+std::string shortened(const std::string& text, std::size_t longest) {
     std::string shown;
     for (char c : text.substr(0, longest)) shown += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
     return text.size() > longest ? shown + ".." : shown;

@@ -57,6 +57,6 @@ private:
 };
 
 /// A user's word for use in messages: short, without control characters.
-std::string shortened(const std::string& text);
+std::string shortened(const std::string& text, std::size_t longest = 80);
 
 }  // namespace mcdem::scene

@@ -70,7 +70,7 @@ void SceneDocument::parse(std::string_view text) {
     } catch (const toml::parse_error& error) {
         const auto& at = error.source().begin;
         throw InputError(fmt::format("{}:{}:{}: must be TOML, got: {}", source_, at.line, at.column,
-                                     shortened(std::string(error.description()))));
+                                     shortened(std::string(error.description()), 200)));
     }
 }
 

@@ -195,7 +195,7 @@ TEST_F(ExperimentCommandTest, WrongOptionsAreBadInput) {
     expect_bad_input(mcdem({"experiment"}), "subcommand");
     expect_bad_input(mcdem({"experiment", "invent"}), "invent");
     expect_bad_input(mcdem({"experiment", "check", "nowhere"}), "nowhere: must be an experiment's folder");
-    expect_bad_input(mcdem({"experiment", "check", "a"}), "a: is no experiment");
+    expect_bad_input(mcdem({"experiment", "check", "a"}), "a: is not an experiment");
 }
 
 TEST_F(ExperimentCommandTest, MeasuredDataAreNotOverwritten) {

@@ -169,7 +169,7 @@ TEST(bad_folder, what_is_not_a_folder_is_reported) {
     EXPECT_THAT(error(path + "/loop"), StartsWith(path + "/loop: cannot be opened: "));
     EXPECT_THAT(error(std::string(5000, 'x')), HasSubstr(": cannot be opened: "));
     fs::remove(folder.path() / "experiment.toml");
-    EXPECT_EQ(error(path), path + ": is no experiment, for it holds no experiment.toml");
+    EXPECT_EQ(error(path), path + ": is not an experiment: it contains no experiment.toml");
     fs::remove(folder.path() / "plate.csv");
     std::ofstream(folder.path() / "experiment.toml") << "[box]\nsize = [0.1, 0.1]\n";
     EXPECT_THAT(error(path), StartsWith(path + ": must hold plate.csv or plate.csv.gz"));

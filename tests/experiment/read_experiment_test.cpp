@@ -246,7 +246,7 @@ TEST(read_experiment, missing_and_empty_files_are_reported) {
     {
         ExperimentFolder folder;
         folder.remove("experiment.toml");
-        EXPECT_THAT(folder.error(), HasSubstr("holds no experiment.toml"));
+        EXPECT_THAT(folder.error(), HasSubstr("contains no experiment.toml"));
     }
     for (const std::string name : {"plate.csv", "grains.csv", "contacts.csv"}) {
         ExperimentFolder folder;

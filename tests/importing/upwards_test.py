@@ -42,7 +42,7 @@ class Upwards(ImportCase):
     def test_downwards_from_the_plate_must_be_confirmed(self):
         tables = self.guess(self.write_downwards(0.0605, "plate", "grains", "contacts"))
         unclear = self.unclear(tables)
-        self.expect_among(unclear, 'z must be confirmed, got "?-z [mm]"', "gives way at its lower end: is z downwards?")
+        self.expect_among(unclear, 'z must be confirmed, got "?-z [mm]"', "moves at its lower end: is z downwards?")
         self.expect_among(unclear, 'origin_z must be confirmed, got "?6')
         text = mapping_text(mapping_of(tables)).replace('"?', '"')
         text = re.sub(r'\norigin_z = "[0-9.]+"', '\norigin_z = "60.5"', text)

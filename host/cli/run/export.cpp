@@ -19,7 +19,7 @@ void run_export(const ExportCommand& command) {
     std::vector<std::string> guides;
     if (command.formats.vtk) guides.push_back(command.out + "/README.txt");
     if (command.formats.xyz) guides.push_back(command.out + "/OVITO.txt");
-    print_out("{} files in {}; {} says how to look at them\n", files, command.out, fmt::join(guides, ", "));
+    print_out("{} files in {}; how to view them: {}\n", files, command.out, fmt::join(guides, ", "));
 }
 
 }  // namespace

@@ -39,7 +39,9 @@ std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
 /// If it is large, also which key to set and how to measure it.
 std::string rate_note(const std::string& what, double rate_error) {
     constexpr double too_much = 0.02;
-    std::string note = fmt::format("{} at most {:.2g} % (estimate)", what, 100 * rate_error);
+    std::string note = fmt::format(
+        "{} at most {} % (estimate)", what,
+        rate_error < 1 ? fmt::format("{:.2g}", 100 * rate_error) : three_digits(100 * rate_error));
     if (rate_error > too_much)
         note += "; set protocol.rate_tolerance to reduce it; `mcdem converge` measures it";
     return note;

@@ -143,18 +143,18 @@ def _upwards(column, now, ends, diameter):
     negated, reach = "-" + column, f"grains reach from {low:.4g} to {high:.4g}"
     if is_among(column_name(column).base, DOWNWARDS):
         if gives in ("high", "both"):
-            return guess(negated, UNCLEAR, "its name says downwards, but the packing gives way at its upper end: remove the - if z is upwards")
+            return guess(negated, UNCLEAR, "its name says downwards, but the packing moves at its upper end: remove the - if z is upwards")
         return guess(negated, "sure", "its name says downwards")
     if gives == "low" and abs(high) < margin:
-        return guess(negated, "sure", reach + ", and the packing gives way at its lower end: z is downwards")
+        return guess(negated, "sure", reach + ", and the packing moves at its lower end: z is downwards")
     if gives == "low":
-        return guess(negated, UNCLEAR, reach + ", and the packing gives way at its lower end: is z downwards? If not, remove the -")
+        return guess(negated, UNCLEAR, reach + ", and the packing moves at its lower end: is z downwards? If not, remove the -")
     if gives == "both":
-        return guess(now.word, UNCLEAR, "the packing gives way at both ends: is z upwards, and does the floor stand still?")
+        return guess(now.word, UNCLEAR, "the packing moves at both ends: is z upwards, and does the floor stand still?")
     if gives == "none" and high < margin and low < -margin:
         return guess(negated, UNCLEAR, reach + ": is z downwards? If not, remove the -")
     if gives == "high" and now.sure != UNCLEAR:
-        now.why += "; upwards, for the packing gives way there"
+        now.why += "; upwards, because the packing moves at its upper end"
     return now
 
 
