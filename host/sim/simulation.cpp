@@ -39,19 +39,18 @@ std::string beyond_law(const Replica& replica, const Scan& scan) {
 std::string cause_of_overlap(const Replica& replica, bool relaxes) {
     const auto passed =
         fmt::format("a corrected overlap passed {} of the sum of the radii", replica.numerics.overlap_limit);
+    const bool has_gamma = replica.contact.model == ContactModel::mc_dem;
     if (relaxes)
-        return passed + fmt::format(
-                            " while the packing relaxed, before the {} moved: the grains are too soft for "
-                            "their weight (is grains.youngs_modulus in Pa?), the packing is too dense, or "
-                            "the time step is too long (numerics.time_step)",
-                            is_cell(replica.box) ? "cell" : "plate");
+        return fmt::format(
+            "{} while the packing relaxed, before the {} moved: the grains are too soft for their weight (is "
+            "grains.youngs_modulus in Pa?), the packing is too dense{}, or the time step is too long "
+            "(numerics.time_step)",
+            passed, is_cell(replica.box) ? "cell" : "plate", has_gamma ? ", contact.gamma is too high" : "");
     if (replica.contact.model == ContactModel::hyperelastic_sphere)
-        return passed + fmt::format(" ({}; or raise numerics.overlap_limit, there are solutions beyond)",
-                                    compress_less(replica));
-    return passed +
-           fmt::format(": no static solution at this compression, the force runs away ({}{})",
-                       compress_less(replica),
-                       replica.contact.model == ContactModel::mc_dem ? ", or lower contact.gamma" : "");
+        return fmt::format("{} ({}; or raise numerics.overlap_limit, there are solutions beyond)", passed,
+                           compress_less(replica));
+    return fmt::format("{}: no static solution at this compression, the force runs away ({}{})", passed,
+                       compress_less(replica), has_gamma ? ", or lower contact.gamma" : "");
 }
 
 /// Advice for each reason why a replica stops (kernels/status.h).

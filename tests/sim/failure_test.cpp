@@ -148,9 +148,9 @@ TEST(Failure, SimulationNamesReplicaGrainStepAndCause) {
     EXPECT_EQ(failures[0].first, 1);
     EXPECT_EQ(failures[0].second.grain, 5);
     EXPECT_GT(failures[0].second.step, 0);
-    EXPECT_NE(failures[0].second.cause.find("no static solution"), std::string::npos)
+    EXPECT_NE(failures[0].second.cause.find("before the plate moved"), std::string::npos)
         << failures[0].second.cause;
-    EXPECT_NE(failures[0].second.cause.find("lower contact.gamma"), std::string::npos)
+    EXPECT_NE(failures[0].second.cause.find("contact.gamma is too high"), std::string::npos)
         << failures[0].second.cause;
     EXPECT_EQ(scans[0], 4) << "two levels, there and back";
     EXPECT_EQ(scans[1], 0);
@@ -191,15 +191,29 @@ TEST(Failure, BeyondTheModelsRangeAReplicaContinuesOrStopsAsTheSceneSpecifies) {
                 testing::HasSubstr("more than the law of elastic_sphere was tested"));
 }
 
-TEST(Failure, AdviceNamesOnlyKeysThatTheModelUses) {
-    const Start start = squeezed(ContactModel::elastic_half_space, 1, 0.35, 5);
+std::string cause_of_failure(const Start& start) {
     mcdem::Simulation simulation(device(), short_scene({start}), {start.packing});
     std::string cause;
     while (simulation.advance([](int, const mcdem::Scan&) {},
                               [&](int, const mcdem::Failure& failure) { cause = failure.cause; })) {
     }
-    EXPECT_NE(cause.find("raise plate.end"), std::string::npos) << cause;
-    EXPECT_EQ(cause.find("contact.gamma"), std::string::npos) << cause;
+    return cause;
+}
+
+TEST(Failure, AdviceNamesOnlyKeysThatTheModelUses) {
+    Start start = squeezed(ContactModel::elastic_half_space, 1, 0.35, 5);
+    const std::string at_rest = cause_of_failure(start);
+    EXPECT_NE(at_rest.find("before the plate moved"), std::string::npos) << at_rest;
+    EXPECT_EQ(at_rest.find("contact.gamma"), std::string::npos) << at_rest;
+    start = squeezed(ContactModel::elastic_half_space, 1, 0.05, 5);
+    start.replica.plate.end = 0.6 * start.replica.plate.start;
+    const std::string compressed = cause_of_failure(start);
+    EXPECT_NE(compressed.find("no static solution"), std::string::npos) << compressed;
+    EXPECT_NE(compressed.find("raise plate.end"), std::string::npos) << compressed;
+    EXPECT_EQ(compressed.find("contact.gamma"), std::string::npos) << compressed;
+    start.replica.contact = squeezed(ContactModel::mc_dem, 2, 0.05, 5).replica.contact;
+    const std::string with_gamma = cause_of_failure(start);
+    EXPECT_NE(with_gamma.find("or lower contact.gamma"), std::string::npos) << with_gamma;
 }
 
 }  // namespace
