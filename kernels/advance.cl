@@ -1,4 +1,4 @@
-/* Kernel `advance`: one time step of every grain. For each grain it
+/* Kernel `advance`: one time step of every grain, or all steps of an interval. In a step, for each grain it
      1. gathers positions and velocities of the neighbours (contact_geometry.h),
      2. computes contact forces from overlaps corrected by surface displacements (contact_forces.h),
      3. computes the surface displacements that these forces cause (surface_displacement.h, confinement.h),

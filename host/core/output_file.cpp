@@ -25,7 +25,7 @@ constexpr std::array marks{
     Mark{FileKind::page, "a page of mcdem", "<!doctype html>", "<meta name=\"generator\" content=\"mcdem\">"},
     Mark{FileKind::diagnosis, "a diagnosis", "{\n", "\"p_omnibus\""},
     Mark{FileKind::convergence, "a table of convergence", "{\n", "\"deviations\""},
-    Mark{FileKind::calibration, "a calibration", "{\n", "\"gamma_standard_error\""},
+    Mark{FileKind::calibration, "a calibration", "{\n", "\"target_top_force_N\""},
     Mark{FileKind::score, "the score of a challenge", "{\n \"cases\"", "\"not_diagnosed\""},
     Mark{FileKind::score_page, "the score of a challenge", "# Score of the challenge\n", ""},
     Mark{FileKind::figure, "a figure of mcdem", "", "mcdem figure"},
@@ -33,8 +33,7 @@ constexpr std::array marks{
     Mark{FileKind::job_script, "a job script of mcdem", "#!/bin/bash\n# Written by mcdem", ""},
     Mark{FileKind::guide, "the guide to an export", "", ""},
     Mark{FileKind::vtk, "an export", "\x89HDF\r\n", "VTKHDF"},
-    Mark{FileKind::xyz, "an export", "",
-         " Properties=element:S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:"},
+    Mark{FileKind::xyz, "an export", "", ":S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:"},
     Mark{FileKind::dump, "an export", "ITEM: TIMESTEP\n", "ITEM: ENTRIES grain partner force_magnitude "},
     Mark{FileKind::manual, "a manual page of mcdem", ".TH MCDEM", ""},
 };

@@ -1,7 +1,10 @@
 // Diagnosis of a scene and an experiment: simulations, library, verdict.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/stop.h"
 #include "diagnose/decide/diagnose.h"

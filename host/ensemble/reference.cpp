@@ -15,9 +15,7 @@ Run run_of(const Experiment& experiment, int discard) {
     run.name = experiment.name;
     run.recordings = {experiment.recording};
     if (run.recordings.front().label.empty()) run.recordings.front().label = experiment.name;
-    auto& parameters = run.recordings.front().parameters;
-    parameters["protocol.discard"] = std::to_string(discard);
-    for (const auto& [key, value] : experiment.materials) parameters[key] = fmt::format("{}", value);
+    run.recordings.front().parameters["protocol.discard"] = std::to_string(discard);
     return run;
 }
 

@@ -1,5 +1,7 @@
 // Readers of the tables of an experiment folder.
 #pragma once
+#include <optional>
+
 #include "experiment/experiment.h"
 #include "scene/table.h"
 

@@ -25,6 +25,11 @@ Key own_key(std::string_view name, double highest, std::string_view unit) {
     return {name, MemberOf<double>(nullptr), unit, {0, highest}, Scope::run, {}};
 }
 
+/// A length that scenes have too, but no longer than those of a laboratory: longer ones are in millimetres.
+Key short_length(std::string_view name, double longest) {
+    return {name, MemberOf<double>(nullptr), "m", {0, longest, Range::Low::excluded}, Scope::run, {}};
+}
+
 constexpr std::size_t longest_key = 1000;  // in --set
 constexpr double largest_box = 20;         // [m]; a larger one was given in millimetres
 
@@ -37,7 +42,8 @@ public:
         if (name && !name->is_string()) problem(*name, "name must be a text");
         if (name) experiment.name = name->value_or(std::string());
         read_container(root, experiment.recording.box);
-        experiment.recording.plate_start = number(root, *find_key("plate.start")).value_or(std::nan(""));
+        experiment.recording.plate_start =
+            number(root, short_length("plate.start", 100)).value_or(std::nan(""));
         experiment.plate_speed = number(root, *find_key("plate.speed"));
         experiment.plate_pause = number(root, own_key("plate.pause", 1e6, "s")).value_or(0);
         experiment.plate_hold = number(root, own_key("plate.hold", 1e6, "s")).value_or(0);
@@ -94,7 +100,7 @@ private:
     }
 
     void read_radius(const toml::table& root, Box& box) {
-        const auto radius = number(root, *find_key("container.radius"));
+        const auto radius = number(root, short_length("container.radius", largest_box / 2));
         if (radius) box.size_x = box.size_y = 2 * *radius;
         if (!radius && !root.at_path("container.radius"))
             problems_.add(file_,

@@ -316,16 +316,23 @@ void write_vtk_walls(const std::filesystem::path& file, const Recording& recordi
     });
 }
 
-/// Removes the files of an earlier export into this folder that the new one has not replaced: ParaView would
-/// show them in the same time series.
+/// Whether a file is called as those of an export: "grains_000012.hdf".
+bool is_numbered(const std::string& name) {
+    for (const std::string what : {"grains_", "contacts_", "forces_", "walls_"})
+        if (name.starts_with(what) && name.ends_with(".hdf"))
+            return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(what.size()), name.end() - 4,
+                               [](unsigned char c) { return c >= '0' && c <= '9'; });
+    return false;
+}
+
+/// Removes the numbered files of an earlier export into this folder that the new one has not replaced:
+/// ParaView would show them in the same time series.
 void remove_others(const std::filesystem::path& folder, const std::set<std::filesystem::path>& kept) {
     std::vector<std::filesystem::path> old;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
-        if (entry.path().extension() == ".hdf" && !kept.count(entry.path())) old.push_back(entry.path());
-    for (const auto& file : old) {
-        expect_replaceable(file, FileKind::vtk);
-        std::filesystem::remove(file);
-    }
+        if (is_numbered(entry.path().filename().string()) && !kept.count(entry.path()))
+            old.push_back(entry.path());
+    for (const auto& file : old) std::filesystem::remove(file);
 }
 
 int export_vtk_replica(RunReader& reader, std::size_t replica, const std::filesystem::path& folder,

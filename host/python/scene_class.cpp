@@ -61,8 +61,8 @@ void bind_scene(py::module_& module) {
         .def("__len__", [](const Scene& scene) { return scene.replicas.size(); })
         .def(py::pickle([](const Scene& scene) { return py::make_tuple(scene.name, scene.text); },
                         [](const py::tuple& state) {
-                            return parse_scene(state[1].cast<std::string>(), state[0].cast<std::string>(),
-                                               {});
+                            return parse_scene(state[1].cast<std::string>(),
+                                               state[0].cast<std::string>() + ".toml", {});
                         }))
         .def("__repr__", [](const Scene& scene) {
             return "<mcdem.Scene " + scene.name + ": " + std::to_string(scene.replicas.size()) + " replica" +

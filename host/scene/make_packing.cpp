@@ -55,11 +55,11 @@ std::optional<TooSmall> too_small_container(const Box& box, const Numerics& nume
     if (shortest.second >= 2 * reach) return std::nullopt;
     return TooSmall{
         shortest.first,
-        fmt::format("must be at least {:.6g} m in a container that repeats{}, got {}: two grains could meet "
-                    "twice, over "
-                    "both ends of the cell; take a {} cell, or lower numerics.skin or numerics.probe_gap",
-                    2 * reach, is_cell(box) ? " at its smallest" : "", shortest.second,
-                    is_cell(box) ? "larger" : "wider")};
+        fmt::format(
+            "must be at least {:.6g} m in a container that repeats{}, got {}: two grains could meet "
+            "twice, over both of its ends; take a {} one, or lower numerics.skin or numerics.probe_gap",
+            2 * reach, is_cell(box) ? " at its smallest" : "", shortest.second,
+            is_cell(box) ? "larger" : "wider")};
 }
 
 void expect_room(const Replica& replica, const Packing& packing) {

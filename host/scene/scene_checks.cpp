@@ -49,8 +49,8 @@ Found plate_in_millimetres(const Settings& settings) {
     constexpr double too_high = 50;
     const auto& replica = settings.replica;
     const auto& generated = settings.generated;
-    const double height =
-        std::max(expected_height(generated, replica.box, mixture_of(replica)), generated.diameter_max);
+    const double height = std::max({expected_height(generated, replica.box, mixture_of(replica)),
+                                    generated.diameter_max, replica.box.size_x, replica.box.size_y});
     return unless(is_cell(replica.box) || replica.plate.start <= too_high * height,
                   fmt::format("must be in metres, got {}, {:.3g} times the height of the packing: divide by "
                               "1000 if it is in millimetres",
@@ -74,7 +74,7 @@ Found coarse_positions(const Settings& settings, double smallest_diameter) {
 
 // clang-format off
 const std::vector<Check> checks{
-    {{"plate.start", "packing.count", "packing.diameter_mean"}, Check::Packing::generated, plate_in_millimetres},
+    {{"plate.start", "packing.count", "packing.diameter_mean", "packing.diameter_max", "packing.packing_fraction", "box.size_x", "box.size_y"}, Check::Packing::generated, plate_in_millimetres},
     {{"numerics.precision", "packing.diameter_min", "box.size_x", "box.size_y", "plate.start"}, Check::Packing::generated, [](const Settings& s) {
         return coarse_positions(s, s.generated.diameter_min);
     }},

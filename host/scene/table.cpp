@@ -60,7 +60,7 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
         std::string_view word =
             without_blanks(line.substr(first, comma == std::string_view::npos ? comma : comma - first));
         if (word.size() > 1 && word.front() == '"' && word.back() == '"')  // as R and spreadsheets write text
-            word = word.substr(1, word.size() - 2);
+            word = without_blanks(word.substr(1, word.size() - 2));
         words.push_back(word);
         first = comma == std::string_view::npos ? comma : comma + 1;
     }

@@ -62,10 +62,15 @@ struct Assign {
 private:
     template <class Whole>
     bool whole(MemberOf<Whole> get) const {
-        const auto number = value.value<std::int64_t>();  // also of 60.0, not of 60.5
-        if (!number || value.is_boolean() || !key.range.contains(static_cast<double>(*number))) return false;
-        get(settings) = static_cast<Whole>(*number);
-        return true;
+        const auto assign = [&](auto number) {
+            if (!key.range.contains(static_cast<double>(number))) return false;
+            get(settings) = static_cast<Whole>(number);
+            return true;
+        };
+        if (value.is_integer()) return assign(value.as_integer()->get());
+        if (!value.is_floating_point()) return false;
+        const double number = value.as_floating_point()->get();  // such as 60.0
+        return number == std::trunc(number) && assign(number);
     }
 };
 

@@ -246,8 +246,9 @@ void Engine::find_neighbours(const std::vector<char>& active) {
 }
 
 /// Enqueues the steps of the interval: in one launch if there is enough work for each core, otherwise in one
-/// launch per step. Replicas that have made their steps are skipped. The number of launches is even, so that
-/// every double-buffered field ends in its original buffer.
+/// launch per step, in which replicas that have made their steps are skipped. Every double-buffered field
+/// ends in its original buffer: a single launch leaves the last state in both, and launches per step are of
+/// an even number.
 void Engine::make_steps() {
     auto& f = fields_;
     const auto advance = [&](std::size_t groups, int step, int replicas, auto& blocks) {

@@ -42,10 +42,12 @@ std::string cause_of_overlap(const Replica& replica, bool relaxes) {
     const bool has_gamma = replica.contact.model == ContactModel::mc_dem;
     if (relaxes)
         return fmt::format(
-            "{} while the packing relaxed, before the {} moved: the grains are too soft for their weight (is "
-            "grains.youngs_modulus in Pa?), the packing is too dense{}, or the time step is too long "
-            "(numerics.time_step)",
-            passed, is_cell(replica.box) ? "cell" : "plate", has_gamma ? ", contact.gamma is too high" : "");
+            "{} while the packing relaxed, before the {} moved: {}the packing is too dense{}, or the time "
+            "step "
+            "is too long (numerics.time_step)",
+            passed, is_cell(replica.box) ? "cell" : "plate",
+            is_cell(replica.box) ? "" : "the grains are too soft for their weight (youngs_modulus in Pa?), ",
+            has_gamma ? ", contact.gamma is too high" : "");
     if (replica.contact.model == ContactModel::hyperelastic_sphere)
         return fmt::format("{} ({}; or raise numerics.overlap_limit, there are solutions beyond)", passed,
                            compress_less(replica));
@@ -162,12 +164,13 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
 
 bool Simulation::take_note(int replica, const IntervalResult& result) {
     auto& runner = runners_[replica];
+    const bool relaxes = runner.state().stage == ProtocolState::Stage::relax;
     plates_[replica].made(result);
     Outcome outcome{replica, result, {}, {}};
     outcome.scan = runner.made(result, plates_[replica].arrived(engine_.max_plate_move(replica)));
     if (result.status) {
         outcome.scan.reset();
-        outcome.failure = failure(replica, result);
+        outcome.failure = failure(replica, result, relaxes);
         runner.stop();
     } else if (!runner.hindrance().empty()) {
         outcome.failure = Failure{runner.state().step, -1, runner.hindrance()};
@@ -229,11 +232,9 @@ Scan Simulation::scan(const Outcome& outcome, ReplicaState state) const {
     return scan;
 }
 
-Failure Simulation::failure(int replica, const IntervalResult& result) const {
-    const ProtocolState& state = runners_[replica].state();
-    return {
-        state.step, result.failed_grain,
-        cause_of(result, scene_.replicas[replica], scene_.slots, state.stage == ProtocolState::Stage::relax)};
+Failure Simulation::failure(int replica, const IntervalResult& result, bool relaxes) const {
+    return {runners_[replica].state().step, result.failed_grain,
+            cause_of(result, scene_.replicas[replica], scene_.slots, relaxes)};
 }
 
 double Simulation::progress() const {

@@ -53,7 +53,7 @@ private:
     /// The scans among `outcomes_`, in their order.
     std::vector<Scan> scans() const;
     Scan scan(const Outcome& outcome, ReplicaState state) const;
-    Failure failure(int replica, const IntervalResult& result) const;
+    Failure failure(int replica, const IntervalResult& result, bool relaxes) const;
 
     Scene scene_;
     std::vector<std::vector<double>> diameter_;  ///< as stated in the scene [m]

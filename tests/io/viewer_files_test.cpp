@@ -85,9 +85,11 @@ TEST(vtk, files_of_an_earlier_export_do_not_remain) {
     export_vtk(folder / "short.h5", folder / "view");
     const auto files = std::filesystem::directory_iterator(folder / "view" / first_name);
     EXPECT_EQ(std::ranges::count_if(files, [](const auto& f) { return f.path().extension() == ".hdf"; }), 8);
-    std::ofstream(folder / "view" / first_name / "mine.hdf") << "something else";
-    EXPECT_THROW(export_vtk(folder / "short.h5", folder / "view"), InputError);
-    EXPECT_TRUE(std::filesystem::exists(folder / "view" / first_name / "mine.hdf"));
+    for (const char* name : {"mine.hdf", "grains_filtered.hdf", "grains_1.vtu"}) {
+        std::ofstream(folder / "view" / first_name / name) << "something else";
+        export_vtk(folder / "short.h5", folder / "view");
+        EXPECT_TRUE(std::filesystem::exists(folder / "view" / first_name / name)) << name;
+    }
 }
 
 int frames_in(const std::filesystem::path& file, const std::string& mark) {

@@ -30,6 +30,9 @@ class Folder(unittest.TestCase):
 class Scenes(Folder):
     def test_is_pickled_for_other_processes(self):
         scene = mcdem.Scene({"grains.friction": 0.2, "batch.replicas": 2})
+        (self.folder / "run.v2.toml").write_text(scene.text)
+        dotted = mcdem.Scene.read(self.folder / "run.v2.toml")
+        self.assertEqual(pickle.loads(pickle.dumps(dotted)).name, dotted.name)
         copy = pickle.loads(pickle.dumps(scene))
         self.assertEqual((copy.name, copy.text, copy.labels, copy.parameters), (scene.name, scene.text, scene.labels, scene.parameters))
 

@@ -60,22 +60,27 @@ TEST(Bits, AReplicaIsTheSameAloneAndInAnyBatch) {
 // all in turn. Intervals have odd and even numbers of steps, some end early, and some replicas take no part.
 TEST(Bits, AReplicaIsTheSameBesideEnoughReplicasForEachCore) {
     const KernelBuild kernels = build(Precision::single_precision);
-    const auto enough = std::min<std::size_t>(mcdem::enough_replicas(device().info(), kernels), 100);
+    if (kernels.lanes == 1) GTEST_SKIP() << "a GPU makes each step for all replicas";
+    // One of every kind has at least 1.6 times the grains of the largest active one, so this is enough.
     std::vector<int> kinds;
-    for (std::size_t r = 0; r < 3 * enough + 5; ++r) kinds.push_back(static_cast<int>(r % 7));
+    for (std::size_t r = 0; r < 7 * mcdem::enough_replicas(device().info(), kernels); ++r)
+        kinds.push_back(static_cast<int>(r % 7));
     Batch beside(kernels, starts(kinds));
     std::deque<Batch> alone;
-    for (int r = 0; r < 7; ++r) alone.emplace_back(kernels, squeezed_lattice(r));
+    for (int kind = 0; kind < 7; ++kind) alone.emplace_back(kernels, squeezed_lattice(kind));
     int cut_short = 0;
     for (int round = 0; round < 8; ++round) {
+        const auto interval = [&](int kind) {
+            return mcdem::StepInterval{(kind + round) % 5 == 0 ? 0 : 7 + (kind + 2 * round) % 4,
+                                       alone[kind].start().replica.plate.start};
+        };
         std::vector<mcdem::StepInterval> intervals;
-        for (int r = 0; r < static_cast<int>(kinds.size()); ++r)
-            intervals.push_back(
-                {(r + round) % 5 == 0 ? 0 : 7 + (r + 2 * round) % 4, beside.start(r).replica.plate.start});
+        for (const int kind : kinds) intervals.push_back(interval(kind));
         const auto made = beside.engine().advance(intervals);
-        for (int r = 0; r < 7; ++r) {
-            EXPECT_EQ(alone[r].engine().advance({intervals[r]}).front().steps, made[r].steps);
-            EXPECT_TRUE(same_bits(alone[r].engine().state(0), beside.engine().state(r)))
+        for (int kind = 0; kind < 7; ++kind) alone[kind].engine().advance({interval(kind)});
+        for (std::size_t r = 0; r < kinds.size(); ++r) {
+            EXPECT_TRUE(
+                same_bits(alone[kinds[r]].engine().state(0), beside.engine().state(static_cast<int>(r))))
                 << r << ", round " << round;
             cut_short += made[r].steps < intervals[r].steps;
         }

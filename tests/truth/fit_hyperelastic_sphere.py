@@ -82,7 +82,7 @@ def read():
 
 
 class Cell:
-    """A polyhedron whose forces are FILLED_PRESSURE times the areas of its facets."""
+    """A polyhedron whose forces are proportional to the areas of its facets, with the mean pressure FILLED_PRESSURE."""
 
     def __init__(self, normals, shares, overlap, self_term):
         self.normals, self.shares, self.overlap = normals, shares, overlap

@@ -67,10 +67,10 @@ def uniform_work(P, poisson_ratio):
 def energy(values, poisson_ratio, c):
     """Energy over E R^3, from the invariants [8, case]."""
     P, hertz, work, size_work, deviator, *own = values
-    e, g, gamma = (1 + c.hertz * P)**(-2 / 3), 1 / (1 + c.coupling * P), 1 / (1 + c.size * P)
+    e, g, z = (1 + c.hertz * P)**(-2 / 3), 1 / (1 + c.coupling * P), 1 / (1 + c.size * P)
     work = work + sum(k * power for k, power in zip(c.own, own))
-    cubic = P * (c.volume * P**2 + c.shear * deviator) * gamma**2
-    return e * hertz + g * work + gamma**(5 / 3) * size_work - 4 * np.pi * (cubic - uniform_work(P, poisson_ratio))
+    cubic = P * (c.volume * P**2 + c.shear * deviator) * z**2
+    return e * hertz + g * work + z**(5 / 3) * size_work - 4 * np.pi * (cubic - uniform_work(P, poisson_ratio))
 
 
 def by_invariants(values, poisson_ratio, c):

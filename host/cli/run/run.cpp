@@ -90,12 +90,14 @@ void print_summary(const Run& run, const RunSummary& summary, std::size_t failed
 
 void warn_of_no_contact(const Run& run) {
     const auto untouched = std::ranges::count_if(run.recordings, [](const Recording& recording) {
-        return !recording.failure && !is_cell(recording.box) &&
+        return !recording.failure && !is_cell(recording.box) && !recording.scans.empty() &&
                std::ranges::none_of(recording.scans, [](const Scan& scan) { return scan.top_force() > 0; });
     });
     if (untouched > 0)
-        spdlog::warn("the plate touched no grain at any scan of {} of {} replicas: lower plate.end",
-                     untouched, run.recordings.size());
+        spdlog::warn(
+            "in {} of {} replica{} the plate touched no grain at any scan: lower plate.end, or the plate's "
+            "positions in [[programme]]",
+            untouched, run.recordings.size(), run.recordings.size() == 1 ? "" : "s");
 }
 
 /// The plate of such a replica stands until the packing settles.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -28,8 +29,8 @@ constexpr std::array<std::array<int, 3>, 8> ramp{{{0x44, 0x01, 0x54},
                                                   {0x27, 0x7f, 0x8e},
                                                   {0x1f, 0xa1, 0x87},
                                                   {0x4a, 0xc1, 0x6d},
-                                                  {0x9f, 0xda, 0x3a},
-                                                  {0xc2, 0xdf, 0x23}}};
+                                                  {0x7f, 0xd3, 0x4e},
+                                                  {0xc8, 0xe0, 0x20}}};
 
 /// Colour at `place` between 0 and 1 of the ramp.
 std::string ramp_colour(double place) {

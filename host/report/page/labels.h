@@ -23,7 +23,7 @@ std::string one_line(const std::string& text);
 /// The text truncated to `most` UTF-8 characters, with an ellipsis if it was longer.
 std::string shortened(const std::string& text, std::size_t most);
 
-/// Three significant digits, without an exponent below a million: "0.0123", "999.9" becomes "1000".
+/// Three significant digits, without an exponent from 1e-4 to a million: "0.0123", "1000" for 999.9.
 std::string three_digits(double value);
 
 /// A unit in which the largest of several stresses has few digits.

@@ -41,7 +41,7 @@ std::string rate_note(const std::string& what, double rate_error) {
     constexpr double too_much = 0.02;
     std::string note = fmt::format(
         "{} at most {} % (estimate)", what,
-        rate_error < 1 ? fmt::format("{:.2g}", 100 * rate_error) : three_digits(100 * rate_error));
+        rate_error < 0.995 ? fmt::format("{:.2g}", 100 * rate_error) : three_digits(100 * rate_error));
     if (rate_error > too_much)
         note += "; set protocol.rate_tolerance to reduce it; `mcdem converge` measures it";
     return note;
