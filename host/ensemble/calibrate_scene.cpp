@@ -106,8 +106,7 @@ void note_other_materials(const Scene& scene, const Replicas& reference, const C
     if (const auto others = other_materials(scene.replicas.front(), stated); !others.empty())
         options.on_note(
             fmt::format("the reference has {}: the calibrated value makes up for the difference; change the "
-                        "scene with --set if the "
-                        "reference is right",
+                        "scene with --set if the reference is right",
                         fmt::join(others, ", ")));
 }
 

@@ -20,14 +20,10 @@
 namespace mcdem::inline experiment {
 namespace {
 
-/// A number >= 0 of experiment.toml that scenes do not have.
-Key own_key(std::string_view name, double highest, std::string_view unit) {
-    return {name, MemberOf<double>(nullptr), unit, {0, highest}, Scope::run, {}};
-}
-
-/// A length that scenes have too, but no longer than those of a laboratory: longer ones are in millimetres.
-Key short_length(std::string_view name, double longest) {
-    return {name, MemberOf<double>(nullptr), "m", {0, longest, Range::Low::excluded}, Scope::run, {}};
+/// A number of experiment.toml that scenes do not have, or with another range: lengths are those of a
+/// laboratory, because longer ones are in millimetres.
+Key own_key(std::string_view name, const Range& range, std::string_view unit) {
+    return {name, MemberOf<double>(nullptr), unit, range, Scope::run, {}};
 }
 
 constexpr std::size_t longest_key = 1000;  // in --set
@@ -43,17 +39,17 @@ public:
         if (name) experiment.name = name->value_or(std::string());
         read_container(root, experiment.recording.box);
         experiment.recording.plate_start =
-            number(root, short_length("plate.start", 100)).value_or(std::nan(""));
+            number(root, own_key("plate.start", {0, 100, Range::Low::excluded}, "m")).value_or(std::nan(""));
         experiment.plate_speed = number(root, *find_key("plate.speed"));
-        experiment.plate_pause = number(root, own_key("plate.pause", 1e6, "s")).value_or(0);
-        experiment.plate_hold = number(root, own_key("plate.hold", 1e6, "s")).value_or(0);
+        experiment.plate_pause = number(root, own_key("plate.pause", {0, 1e6}, "s")).value_or(0);
+        experiment.plate_hold = number(root, own_key("plate.hold", {0, 1e6}, "s")).value_or(0);
         for (const std::string& key : material_keys()) {
             if (const auto value = number(root, *find_key(key))) experiment.materials[key] = *value;
             read_sigma(root, *find_key(key), experiment);
         }
         Measurement& errors = experiment.measurement;
         const auto error = [&](std::string_view name, double highest, std::string_view unit) {
-            return number(root, own_key(name, highest, unit)).value_or(0);
+            return number(root, own_key(name, {0, highest}, unit)).value_or(0);
         };
         errors.position_error = error("measurement.position_error", 1, "m");
         errors.diameter_error = error("measurement.diameter_error", 1, "m");
@@ -100,7 +96,8 @@ private:
     }
 
     void read_radius(const toml::table& root, Box& box) {
-        const auto radius = number(root, short_length("container.radius", largest_box / 2));
+        const auto radius =
+            number(root, own_key("container.radius", {0, largest_box / 2, Range::Low::excluded}, "m"));
         if (radius) box.size_x = box.size_y = 2 * *radius;
         if (!radius && !root.at_path("container.radius"))
             problems_.add(file_,
@@ -140,7 +137,7 @@ private:
         if (key.name.starts_with("grains."))
             names.push_back(fmt::format("uncertainty.{}", last_part(key.name)));
         for (const std::string& name : names)
-            if (const auto sigma = number(root, own_key(name, 1e15, key.unit)))
+            if (const auto sigma = number(root, own_key(name, {0, 1e15}, key.unit)))
                 experiment.uncertainty[std::string(key.name)] = *sigma;
     }
 
