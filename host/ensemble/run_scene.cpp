@@ -22,9 +22,6 @@ double seconds_since(Clock::time_point start) {
 /// Maximum size of scans in memory; beyond it they are written to disk before the next checkpoint is due.
 constexpr std::size_t max_bytes_held = std::size_t{256} << 20;
 
-/// A run with more replicas stops without a segment, because that takes about 6 ms per replica.
-constexpr std::size_t max_replicas_of_quick_segment = 250;
-
 std::size_t bytes_of(const Scan& scan) {
     return sizeof(Scan) + (scan.position.size() + scan.rotation.size()) * sizeof(Vec3) +
            scan.contacts.size() * sizeof(Contact);
@@ -49,15 +46,11 @@ public:
 
     /// Returns to the last checkpoint, or to the start if there is none.
     void resume() {
-        const auto checkpoint = find_checkpoint(folder_, identity_);
+        const auto checkpoint = find_checkpoint(folder_, identity_, options_.on_warning);
         folder_.drop_segments_from(checkpoint ? checkpoint->segments : 0);
         if (!checkpoint) return;
-        if (!checkpoint->warning.empty()) options_.on_warning(checkpoint->warning);
         folder_.expect_whole_segments(options_.stop_wanted);
         simulation_.restore(checkpoint->fields);
-        anything_new_ = take_scans(*checkpoint, folder_.path(), pending_);
-        for (const auto& recording : pending_.recordings)
-            for (const Scan& scan : recording.scans) bytes_held_ += bytes_of(scan);
     }
 
     RunSummary run() {
@@ -80,9 +73,8 @@ private:
             stop = options_.stop_wanted();
             if (checkpoint_due() || !more || stop) write_checkpoint();
         }
-        const bool done = !more && !anything_new_;
-        if (done) folder_.finish(options_.stop_wanted);
-        return {done ? RunEnd::done : RunEnd::interrupted, simulation_.grain_steps(), seconds_since(start)};
+        if (!more) folder_.finish(options_.stop_wanted);
+        return {!more ? RunEnd::done : RunEnd::interrupted, simulation_.grain_steps(), seconds_since(start)};
     }
 
     /// Called when the device or the disk has failed: writes the data recorded since the last checkpoint, if
@@ -119,16 +111,14 @@ private:
         return seconds_since(last_checkpoint_) >= interval || bytes_held_ >= max_bytes_held;
     }
 
-    void write_segment() try {
-        const bool is_quick = pending_.recordings.size() <= max_replicas_of_quick_segment;
-        folder_.append_segment(pending_, is_quick ? StopWanted(never_stop) : options_.stop_wanted);
+    void write_segment() {
+        folder_.append_segment(pending_);
         for (auto& recording : pending_.recordings) {
             recording.scans.clear();
             recording.failure.reset();
         }
         anything_new_ = false;
         bytes_held_ = 0;
-    } catch (const Interrupted&) {  // the run is to stop, and a segment takes long
     }
 
     /// Writes the segment first, then the checkpoint that names it. A crash in between leaves one segment too
@@ -137,9 +127,8 @@ private:
         const auto start = Clock::now();
         simulation_.pass_on(keep_, note_);
         if (anything_new_ || folder_.segments() == 0) write_segment();
-        auto checkpoint = make_checkpoint(identity_, folder_.segments(), simulation_.save());
-        if (anything_new_) keep_scans(pending_, checkpoint);
-        mcdem::write_checkpoint(folder_.path(), checkpoint);
+        mcdem::write_checkpoint(folder_.path(),
+                                make_checkpoint(identity_, folder_.segments(), simulation_.save()));
         checkpoint_seconds_ = seconds_since(start);
         last_checkpoint_ = Clock::now();
     }
@@ -161,7 +150,7 @@ private:
 /// Work after run.h5 is complete; it can be repeated safely.
 void close_folder(const RunOptions& options) {
     write_csv(options.folder, options.stop_wanted);
-    remove_checkpoints(options.folder);
+    remove_checkpoint(options.folder);
 }
 
 ResultFolder open_folder(const RunOptions& options) {

@@ -10,7 +10,6 @@
 #include "core/parameters.h"
 #include "core/sha256.h"
 #include "io/result_file.h"
-#include "io/scan_bytes.h"
 #include "scene/read_scene.h"
 
 namespace mcdem::inline ensemble {
@@ -19,7 +18,6 @@ namespace {
 const std::string program_field = "program";
 const std::string kernels_field = "kernels";
 const std::string packings_field = "packings";
-const std::string scans_field = "scans";
 
 std::vector<std::byte> bytes_of(const std::string& text) {
     const auto* begin = reinterpret_cast<const std::byte*>(text.data());
@@ -114,25 +112,10 @@ Checkpoint make_checkpoint(const RunIdentity& identity, int segments,
     return checkpoint;
 }
 
-void keep_scans(const Run& pending, Checkpoint& checkpoint) {
-    checkpoint.fields[scans_field] = scan_bytes(pending.recordings);
-}
-
-bool take_scans(const Checkpoint& checkpoint, const std::filesystem::path& folder, Run& pending) {
-    const auto found = checkpoint.fields.find(scans_field);
-    if (found == checkpoint.fields.end()) return false;
-    const std::string where = folder.string() + ": the checkpoint";
-    try {
-        add_scans(found->second, pending.recordings, where);
-    } catch (const InputError& error) {
-        throw InputError(fmt::format("{}; start the run again in another folder", error.what()));
-    }
-    return true;
-}
-
-std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunIdentity& identity) {
+std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunIdentity& identity,
+                                          const std::function<void(const std::string&)>& on_warning) {
     const std::string where = folder.path().string();
-    auto checkpoint = read_checkpoint(folder.path());
+    const auto checkpoint = read_checkpoint(folder.path());
     if (!checkpoint) {
         // Stopped before its first checkpoint. Segments, if any, still identify the run.
         if (folder.segments() > 0)
@@ -162,10 +145,10 @@ std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunI
                         "run cannot be resumed; start it again in another folder",
                         where, checkpoint->segments, folder.segments()));
     if (program != identity.program)
-        checkpoint->warning += fmt::format(
-            "{}{}: was begun by {}, goes on with {}: results may differ from "
-            "those of an uninterrupted run",
-            checkpoint->warning.empty() ? "" : "; ", where, program, identity.program);
+        on_warning(
+            fmt::format("{}: was begun by {}, goes on with {}: results may differ from those of an "
+                        "uninterrupted run",
+                        where, program, identity.program));
     return checkpoint;
 }
 

@@ -1,5 +1,6 @@
 // State of an unfinished run on disk: contents of a checkpoint, and whether one fits.
 #pragma once
+#include <functional>
 #include <optional>
 
 #include "cl/device.h"
@@ -24,12 +25,6 @@ RunIdentity identity_of(const Device& device, const Scene& scene, const std::str
 Checkpoint make_checkpoint(const RunIdentity& identity, int segments,
                            std::map<std::string, std::vector<std::byte>> fields);
 
-/// Puts the scans that are not in a segment yet into the checkpoint.
-void keep_scans(const Run& pending, Checkpoint& checkpoint);
-
-/// Adds those scans to `pending`; returns whether there are any. Throws InputError if they do not fit.
-bool take_scans(const Checkpoint& checkpoint, const std::filesystem::path& folder, Run& pending);
-
 /// Throws InputError if the folder cannot be used for a run: it contains an experiment, answers to a
 /// challenge, or a plate.csv that is not from a run.
 void expect_room_for_run(const std::filesystem::path& folder);
@@ -38,7 +33,8 @@ void expect_room_for_run(const std::filesystem::path& folder);
 void expect_scene_of(const std::filesystem::path& folder, const Scene& scene);
 
 /// Checkpoint from which the run in `folder` resumes; none: from the start. Throws InputError if the folder
-/// contains another run. Sets Checkpoint::warning if results may differ from an uninterrupted run.
-std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunIdentity& identity);
+/// contains another run. Calls `on_warning` if results may differ from those of an uninterrupted run.
+std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunIdentity& identity,
+                                          const std::function<void(const std::string&)>& on_warning);
 
 }  // namespace mcdem::ensemble

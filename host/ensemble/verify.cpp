@@ -110,9 +110,8 @@ void check_run(const fs::path& folder, std::vector<Verified>& all) {
         if (fs::exists(folder / "plate.csv"))
             look(all, folder / "plate.csv", [&] { check_plate_table(folder); });
     }
-    for (const char* name : {"checkpoint.h5", "checkpoint.previous.h5"})
-        if (fs::exists(folder / name))
-            look(all, folder / name, [&] { expect_whole_checkpoint(folder / name); });
+    if (has_checkpoint(folder))
+        look(all, folder / "checkpoint.h5", [&] { expect_whole_checkpoint(folder / "checkpoint.h5"); });
     try {
         for (const fs::path& segment : segment_files(folder)) result(segment);
     } catch (const InputError& error) {

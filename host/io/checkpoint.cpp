@@ -8,10 +8,9 @@ namespace mcdem::inline io {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr long checkpoint_format = 3;
+constexpr long checkpoint_format = 4;
 
-fs::path newest(const fs::path& folder) { return folder / "checkpoint.h5"; }
-fs::path previous(const fs::path& folder) { return folder / "checkpoint.previous.h5"; }
+fs::path checkpoint_file(const fs::path& folder) { return folder / "checkpoint.h5"; }
 
 void write_file(NewFile& out, const Checkpoint& checkpoint) {
     h5::File file = h5::File::create(out);
@@ -63,42 +62,27 @@ Checkpoint read_file(const fs::path& path) {
 }  // namespace
 
 void write_checkpoint(const fs::path& folder, const Checkpoint& checkpoint) {
-    replace_file(newest(folder), [&](NewFile& out) {
+    replace_file(checkpoint_file(folder), [&](NewFile& out) {
         write_file(out, checkpoint);
         out.close();
-        // After a crash between the two renames only the previous checkpoint exists, and it is used.
-        if (fs::exists(newest(folder))) move_file(newest(folder), previous(folder));
     });
 }
 
 std::optional<Checkpoint> read_checkpoint(const fs::path& folder) {
-    std::vector<std::string> problems;
-    for (const auto& path : {newest(folder), previous(folder)}) {
-        if (!fs::exists(path)) continue;
-        try {
-            Checkpoint checkpoint = read_file(path);
-            if (!problems.empty())
-                checkpoint.warning = problems.front() + "; going on from " + path.filename().string();
-            return checkpoint;
-        } catch (const InputError& error) {
-            problems.push_back(error.what());
-        }
+    if (!has_checkpoint(folder)) return std::nullopt;
+    try {
+        return read_file(checkpoint_file(folder));
+    } catch (const InputError& error) {
+        throw InputError({error.what(), folder.string() +
+                                            ": the checkpoint cannot be read: start the run again "
+                                            "in another folder"});
     }
-    if (problems.empty()) return std::nullopt;
-    problems.push_back(folder.string() +
-                       ": no checkpoint can be read: start the run again in another folder");
-    throw InputError(problems);
 }
 
 void expect_whole_checkpoint(const fs::path& file) { read_file(file); }
 
-bool has_checkpoint(const fs::path& folder) {
-    return fs::exists(newest(folder)) || fs::exists(previous(folder));
-}
+bool has_checkpoint(const fs::path& folder) { return fs::exists(checkpoint_file(folder)); }
 
-void remove_checkpoints(const fs::path& folder) {
-    fs::remove(newest(folder));
-    fs::remove(previous(folder));
-}
+void remove_checkpoint(const fs::path& folder) { fs::remove(checkpoint_file(folder)); }
 
 }  // namespace mcdem::io

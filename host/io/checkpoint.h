@@ -14,14 +14,12 @@ struct Checkpoint {
     std::string device;      ///< results are bit-identical only on the same device
     int segments = 0;        ///< number of result segments before it; later ones are discarded on resuming
     std::map<std::string, std::vector<std::byte>> fields;
-    std::string warning;  ///< set on reading: why an older checkpoint was used; otherwise empty
 };
 
-/// Writes `<folder>/checkpoint.h5` and keeps the previous one as checkpoint.previous.h5.
+/// Writes `<folder>/checkpoint.h5`.
 void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
-/// The newest undamaged checkpoint; none if none was written. Throws InputError if all existing ones are
-/// damaged.
+/// The checkpoint; none if none was written. Throws InputError if it is damaged.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& folder);
 
 /// Throws InputError if the file is not a checkpoint or one of its digests is wrong.
@@ -29,7 +27,7 @@ void expect_whole_checkpoint(const std::filesystem::path& file);
 
 bool has_checkpoint(const std::filesystem::path& folder);
 
-/// Removes the files of write_checkpoint when a run is finished.
-void remove_checkpoints(const std::filesystem::path& folder);
+/// Removes the checkpoint when a run is finished.
+void remove_checkpoint(const std::filesystem::path& folder);
 
 }  // namespace mcdem::io

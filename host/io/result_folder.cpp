@@ -139,8 +139,8 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
 
 bool ResultFolder::is_finished() const { return fs::exists(run_file(folder_)); }
 
-void ResultFolder::append_segment(const Run& scans_since_last, const StopWanted& stop_wanted) {
-    write_run(segment_file(folder_, segments_), scans_since_last, stop_wanted);
+void ResultFolder::append_segment(const Run& scans_since_last) {
+    write_run(segment_file(folder_, segments_), scans_since_last);
     ++segments_;
 }
 

@@ -42,7 +42,7 @@ public:
     // meanwhile.
 
     /// Writes the scans since the last segment, with the provenance of the run.
-    void append_segment(const Run& scans_since_last, const StopWanted& stop_wanted = never_stop);
+    void append_segment(const Run& scans_since_last);
     /// Discards segment `index` and all later ones, which are newer than the checkpoint.
     void drop_segments_from(int index);
     /// Reads all segments. Throws InputError with the damaged one and a remedy.

@@ -219,14 +219,14 @@ void write_result_file(const std::filesystem::path& file, const Run& run,
     });
 }
 
-void write_run(const std::filesystem::path& file, const Run& run, const StopWanted& stop_wanted) {
+void write_run(const std::filesystem::path& file, const Run& run) {
     const auto write = [&](ResultWriter& writer) {
         for (std::size_t r = 0; r < run.recordings.size(); ++r) {
             for (const Scan& scan : run.recordings[r].scans) writer.append(r, scan);
             writer.end(r, run.recordings[r].failure);
         }
     };
-    write_result_file(file, run, write, stop_wanted);
+    write_result_file(file, run, write);
 }
 
 }  // namespace mcdem::io

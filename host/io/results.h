@@ -13,9 +13,8 @@ namespace mcdem::inline io {
 /// Data to read: scalars of the scans are always read; positions and contacts are most of the data.
 enum class ReadWhat { observables, positions, contacts, everything };
 
-/// Writes the complete run, or, after an error, nothing. Throws Interrupted if `stop_wanted` becomes true
-/// meanwhile.
-void write_run(const std::filesystem::path& file, const Run& run, const StopWanted& stop_wanted = never_stop);
+/// Writes the complete run, or, after an error, nothing.
+void write_run(const std::filesystem::path& file, const Run& run);
 
 /// Reads a result file, or a result folder: its run.h5, otherwise the segments of an unfinished run. Throws
 /// Interrupted if `stop_wanted` becomes true meanwhile.

@@ -256,7 +256,7 @@ TEST_F(RunPartsTest, DoNotTouchACheckpointInUse) {
 
 TEST_F(RunPartsTest, UnusableFilesOfAPartAreDeleted) {
     interrupt("lost", 0, 1);
-    for (const char* name : {"checkpoint.h5", "checkpoint.previous.h5", "segment-000000.h5"})
+    for (const char* name : {"checkpoint.h5", "segment-000000.h5"})
         std::ofstream(work_folder("lost") / name) << "damaged";
     finish("lost");
     EXPECT_THAT(warnings_, ElementsAre(HasSubstr("computed again")));

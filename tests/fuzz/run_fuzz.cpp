@@ -107,7 +107,6 @@ void try_checkpoint(ByteSource& source) {
     }
     write_checkpoint(scratch_folder(), checkpoint);
     if (source.byte() % 4 == 0) fuzz::mutate_hdf5(scratch_folder() / "checkpoint.h5", source);
-    remove(scratch_folder() / "checkpoint.previous.h5");
     expect_read_or_refused([&] {
         if (const auto read = read_checkpoint(scratch_folder())) simulation.go_on_from(*read);
     });

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 Checkpoint example(int segments) {
-    Checkpoint checkpoint{"name = 1\n", "a device", segments, {}, ""};
+    Checkpoint checkpoint{"name = 1\n", "a device", segments, {}};
     std::mt19937 random(static_cast<unsigned>(segments));
     for (const auto& [name, size] :
          {std::pair("positions", 100000), std::pair("status", 3), std::pair("none", 0)})
@@ -39,42 +39,22 @@ TEST(checkpoint, is_read_back_bit_for_bit) {
     const auto found = read_checkpoint(folder.path());
     ASSERT_TRUE(found.has_value());
     expect_same_checkpoint(example(3), *found);
-    EXPECT_EQ(found->warning, "");
 }
 
-TEST(checkpoint, a_damaged_newest_gives_the_previous_one_with_a_warning) {
+TEST(checkpoint, is_replaced_and_removed) {
     TemporaryFolder folder;
     write_checkpoint(folder.path(), example(3));
     write_checkpoint(folder.path(), example(4));
-    const std::string whole = read_bytes(folder / "checkpoint.h5");
-    write_bytes(folder / "checkpoint.h5", whole.substr(0, whole.size() / 2));
-    const auto found = read_checkpoint(folder.path());
-    ASSERT_TRUE(found.has_value());
-    expect_same_checkpoint(example(3), *found);
-    EXPECT_THAT(found->warning, HasSubstr("checkpoint.h5"));
-    EXPECT_THAT(found->warning, HasSubstr("going on from checkpoint.previous.h5"));
-}
-
-TEST(checkpoint, a_missing_newest_gives_the_previous_one) {
-    TemporaryFolder folder;
-    write_checkpoint(folder.path(), example(3));
-    std::filesystem::rename(folder / "checkpoint.h5", folder / "checkpoint.previous.h5");
-    ASSERT_TRUE(read_checkpoint(folder.path()).has_value());
-    remove_checkpoints(folder.path());
+    expect_same_checkpoint(example(4), read_checkpoint(folder.path()).value());
+    remove_checkpoint(folder.path());
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(checkpoint, if_both_are_damaged_the_error_names_both) {
+TEST(checkpoint, a_damaged_one_is_refused_with_advice) {
     TemporaryFolder folder;
     write_bytes(folder / "checkpoint.h5", "no");
-    write_bytes(folder / "checkpoint.previous.h5", "");
-    try {
-        read_checkpoint(folder.path());
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_EQ(error.problems().size(), 3u);
-        EXPECT_THAT(error.what(), HasSubstr("checkpoint.previous.h5"));
-    }
+    EXPECT_THAT([&] { read_checkpoint(folder.path()); },
+                ThrowsMessage<InputError>(HasSubstr("start the run again in another folder")));
 }
 
 h5::Handle opened_to_change(const TemporaryFolder& folder) {
