@@ -203,13 +203,12 @@ INLINE void advance_grains(Grain at, int step, Batch batch, Written to, EXCHANGE
    and cores do not wait for each other after each step. */
 WORK_GROUP(STEP_ITEMS)
 kernel void advance(const int step, const int replica_count, global const Replica* restrict replicas,
-                    global const Material* restrict materials, global const int* restrict blocks,
-                    global const int* restrict replica_of_block, global volatile int* restrict stop_at,
-                    global Motion* restrict motion, global Motion* restrict motion_next,
-                    global const int* restrict partner, global const int* restrict partner_slot,
-                    global real* restrict displacement, global real* restrict displacement_next,
-                    global real* restrict history, global real* restrict memory, global Track* restrict track,
-                    global int* restrict status) {
+                    global const Material* restrict materials, global const Block* restrict blocks,
+                    global volatile int* restrict stop_at, global Motion* restrict motion,
+                    global Motion* restrict motion_next, global const int* restrict partner,
+                    global const int* restrict partner_slot, global real* restrict displacement,
+                    global real* restrict displacement_next, global real* restrict history,
+                    global real* restrict memory, global Track* restrict track, global int* restrict status) {
     MEMORY_OF_WORK_ITEM
 #if LANES == 16
     const bool whole = replica_count > 0;
@@ -217,7 +216,8 @@ kernel void advance(const int step, const int replica_count, global const Replic
     const int turns = whole ? replica_count : (int)get_num_groups(0);
     int turn = whole ? atomic_inc(taken) : (int)get_group_id(0);
     while (turn < turns) {
-        const int block = blocks[turn], r = replica_of_block[block], first = FIRST_GRAIN(block);
+        const Block block = blocks[turn];
+        const int r = block.replica, first = FIRST_GRAIN(block);
         global const Replica* restrict replica = replicas + r;
         const int end = whole ? replica->first_grain + replica->grain_count : first + LANES;
         for (int made = 0; made <= (whole ? stop_at[r] : 0); ++made) {
@@ -233,7 +233,8 @@ kernel void advance(const int step, const int replica_count, global const Replic
         turn = whole ? atomic_inc(taken) : turns;
     }
 #else
-    const int block = blocks[get_group_id(0)], r = replica_of_block[block], first = FIRST_GRAIN(block);
+    const Block block = blocks[get_group_id(0)];
+    const int r = block.replica, first = FIRST_GRAIN(block);
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
     const Written to = {motion_next, displacement_next, history, track, status, stop_at + r};
     const Grain at = grain_at(replicas + r, materials, r, first, step, load_motion(motion, first));

@@ -22,12 +22,22 @@ INLINE int3 cell_of(global const Replica* restrict replica, real4 point) {
                   cell_along(point.z, replica->cell_size[2], replica->span_z));
 }
 
-/* The first of the `grains` grains of a work-item in kernels that build the lists, or -1 beyond the last
-   block. `grains` divides BLOCK; the work-group size need not be BLOCK. */
-INLINE int listed_grain(global const int* restrict blocks, int block_count, int grains) {
+/* Replica and first of the `grains` grains of a work-item in kernels that build the lists; `first` is -1
+   beyond the last block. `grains` divides BLOCK; the work-group size need not be BLOCK. */
+INLINE Block listed_grains(global const Block* restrict blocks, int block_count, int grains) {
     const int place = get_global_id(0) * grains;
-    return place < block_count * BLOCK ? blocks[place / BLOCK] * BLOCK + place % BLOCK : -1;
+    if (place >= block_count * BLOCK) return (Block){0, -1};
+    const Block block = blocks[place / BLOCK];
+    return (Block){block.replica, block.first + place % BLOCK};
 }
+
+/* Linked lists of the grains in each cell. */
+typedef struct {
+    global const Motion* motion;
+    global const int* head;
+    global const int* next; /* per grain; -1: the last one */
+} CellLists;
+
 WORK_GROUP(LIST_ITEMS)
 kernel void empty_cells(global const Replica* restrict replicas, global const Portion* restrict portions,
                         global int* restrict cell_head) {
@@ -42,12 +52,12 @@ kernel void empty_cells(global const Replica* restrict replicas, global const Po
 
 WORK_GROUP(LIST_ITEMS)
 kernel void fill_cells(const int block_count, global const Replica* restrict replicas,
-                       global const int* restrict blocks, global const int* restrict replica_of_block,
-                       global const Motion* restrict motion, global volatile int* restrict cell_head,
-                       global int* restrict cell_next) {
-    const int grain = listed_grain(blocks, block_count, 1);
+                       global const Block* restrict blocks, global const Motion* restrict motion,
+                       global volatile int* restrict cell_head, global int* restrict cell_next) {
+    const Block listed = listed_grains(blocks, block_count, 1);
+    const int grain = listed.first;
     if (grain < 0) return;
-    global const Replica* restrict replica = replicas + replica_of_block[grain / BLOCK];
+    global const Replica* restrict replica = replicas + listed.replica;
     const real4 own = motion[grain].position;
     if (!(own.w > R(0))) return;
     const int3 place = cell_of(replica, own);

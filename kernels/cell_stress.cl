@@ -7,8 +7,7 @@
 WORK_GROUP(REDUCERS)
 kernel void cell_stress(global const Replica* restrict replicas, global const Portion* restrict portions,
                         global const int* restrict steps, global const Motion* restrict motion,
-                        global const int* restrict partner, global const real* restrict force_x,
-                        global const real* restrict force_y, global const real* restrict force_z,
+                        global const int* restrict partner, global const real* restrict forces,
                         global real* restrict moments) {
     local real shared[REDUCERS][STRESS_SUMS];
     const Portion portion = portions[get_group_id(0)];
@@ -22,9 +21,10 @@ kernel void cell_stress(global const Replica* restrict replicas, global const Po
     for (int k = portion.first + lane; k < end; k += REDUCERS) {
         const int grain = replica->first_grain + k;
         for (int c = 0; c < SLOTS; ++c) {
-            const size_t slot = SLOT_PLACE(FIRST_SLOT(grain), c);
-            const int other = partner[slot];
-            const real3 force = (real3)(force_x[slot], force_y[slot], force_z[slot]);
+            const int other = partner[SLOT_PLACE(FIRST_SLOT(grain), c)];
+            const real3 force = (real3)(forces[SLOT_PLACE(force_row(grain, 0), c)],
+                                        forces[SLOT_PLACE(force_row(grain, 1), c)],
+                                        forces[SLOT_PLACE(force_row(grain, 2), c)]);
             if (other < 0 || (force.x == R(0) && force.y == R(0) && force.z == R(0))) continue;
             const real3 listed = motion[other].position.xyz - motion[grain].position.xyz;
             const real3 half_branch = R(0.5) * deformed(f, nearest_in_cell(replica, f, listed));

@@ -6,7 +6,7 @@
 #if LANES == 16
 #define IS_LEADER true
 #define STEP_ITEMS (BLOCK / LANES) /* work-group size */
-#define FIRST_GRAIN(block) ((block)*BLOCK + (int)get_local_id(0) * LANES)
+#define FIRST_GRAIN(block) ((block).first + (int)get_local_id(0) * LANES)
 #define MEMORY_OF_WORK_ITEM \
 private                     \
     ContactTable own_table; \
@@ -16,7 +16,7 @@ private                     \
 #else
 #define STEP_ITEMS (BLOCK * SLOTS)
 #define IS_LEADER (get_local_id(0) % SLOTS == 0)
-#define FIRST_GRAIN(block) ((block)*BLOCK + (int)(get_local_id(0) / SLOTS))
+#define FIRST_GRAIN(block) ((block).first + (int)(get_local_id(0) / SLOTS))
 #define MEMORY_OF_WORK_ITEM                                          \
     local ContactTable tables[BLOCK];                                \
     local real scratches[BLOCK][SLOT_SUMS * SHARED_ROW];             \

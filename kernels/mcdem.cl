@@ -4,6 +4,7 @@
 #include "material.h"
 #include "replica.h"
 #include "status.h"
+#include "block.h"
 #include "report.h"
 #include "lanes.h"
 #include "partner.h"

@@ -51,10 +51,15 @@ INLINE void add_contact_sums(Grain at, Neighbours neighbour, Displaced b, Contac
     sums->pressed += share * force * overlap;
 }
 
-/* Fields that measure() writes, one value per slot. */
+/* Fields that measure() writes, one value per slot; `force`: the three rows of this work-item. */
 typedef struct {
-    global real *force_x, *force_y, *force_z, *overlap, *arm;
+    global real *force, *overlap, *arm;
 } MeasuredRows;
+
+/* The field `force` has three rows for the grains of a work-item, one per axis. */
+INLINE size_t force_row(int grain, int axis) {
+    return ((size_t)(grain / LANES) * 3 + axis) * (LANES * SLOTS) + grain % LANES;
+}
 
 INLINE ContactSums measure_contacts(Grain at, Batch batch, MeasuredRows rows, EXCHANGE ContactTable* table) {
     global const Replica* restrict replica = at.replica;
@@ -68,9 +73,9 @@ INLINE ContactSums measure_contacts(Grain at, Batch batch, MeasuredRows rows, EX
         const Contacts c = contact_forces(at, replica->effects, neighbour, b, R(0), &memory);
         add_contact_sums(at, neighbour, b, c, &sums);
         if (replica->finite_contacts) tabulate(c, neighbour.normal, v, table);
-        store_slot(c.force.x, rows.force_x, at.row, v);
-        store_slot(c.force.y, rows.force_y, at.row, v);
-        store_slot(c.force.z, rows.force_z, at.row, v);
+        store_slot(c.force.x, rows.force, 0, v);
+        store_slot(c.force.y, rows.force, LANES * SLOTS, v);
+        store_slot(c.force.z, rows.force, 2 * LANES * SLOTS, v);
         store_slot(c.overlap, rows.overlap, at.row, v);
         store_slot(c.arm, rows.arm, at.row, v);
     }
@@ -98,21 +103,20 @@ INLINE lanes kinetic_energy(Grain at) {
 
 WORK_GROUP(STEP_ITEMS)
 kernel void measure(global const Replica* restrict replicas, global const Material* restrict materials,
-                    global const int* restrict blocks, global const int* restrict replica_of_block,
-                    global const int* restrict steps, global const Motion* restrict motion,
-                    global const int* restrict partner, global const int* restrict partner_slot,
-                    global const real* restrict displacement, global real* restrict memory,
-                    global const Track* restrict track, global real* restrict force_x,
-                    global real* restrict force_y, global real* restrict force_z,
-                    global real* restrict overlap, global real* restrict arm, global real4* restrict energy,
-                    global real* restrict frequency) {
+                    global const Block* restrict blocks, global const int* restrict steps,
+                    global const Motion* restrict motion, global const int* restrict partner,
+                    global const int* restrict partner_slot, global const real* restrict displacement,
+                    global real* restrict memory, global const Track* restrict track,
+                    global real* restrict force, global real* restrict overlap, global real* restrict arm,
+                    global real4* restrict energy, global real* restrict frequency) {
     MEMORY_OF_WORK_ITEM
-    const int block = blocks[get_group_id(0)], r = replica_of_block[block], first = FIRST_GRAIN(block);
+    const Block block = blocks[get_group_id(0)];
+    const int r = block.replica, first = FIRST_GRAIN(block);
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
     const slots grain = first + LANE_NUMBERS;
     const Grain at = grain_at(replica, materials, r, first, steps[r], load_motion(motion, grain));
-    const MeasuredRows rows = {force_x, force_y, force_z, overlap, arm};
+    const MeasuredRows rows = {force + force_row(first, 0), overlap, arm};
     const ContactSums sums = measure_contacts(at, batch, rows, table);
     const lanes surfaces = replica->finite_contacts ? surface_energy(at, table) : (lanes)(R(0));
     share(sums.stored, 0, scratch);
@@ -141,22 +145,19 @@ kernel void measure(global const Replica* restrict replicas, global const Materi
 #define REDUCERS 64
 #define SUMS 20 /* kinetic energy, elastic energy, 18 wall force components */
 
-INLINE void add_wall_forces(size_t row, global const int* partner, global const real* x, global const real* y,
-                            global const real* z, real* sums) {
+INLINE void add_wall_forces(int grain, global const int* partner, global const real* force, real* sums) {
     for (int c = 0; c < SLOTS; ++c) {
-        const size_t slot = SLOT_PLACE(row, c);
-        if (partner[slot] >= NO_PARTNER) continue;
-        const int wall = WALL_PARTNER(0) - partner[slot];
-        sums[2 + 3 * wall] -= x[slot];
-        sums[3 + 3 * wall] -= y[slot];
-        sums[4 + 3 * wall] -= z[slot];
+        const int at_wall = partner[SLOT_PLACE(FIRST_SLOT(grain), c)];
+        if (at_wall >= NO_PARTNER) continue;
+        const int wall = WALL_PARTNER(0) - at_wall;
+        for (int axis = 0; axis < 3; ++axis)
+            sums[2 + 3 * wall + axis] -= force[SLOT_PLACE(force_row(grain, axis), c)];
     }
 }
 
 WORK_GROUP(REDUCERS)
 kernel void reduce(global const Replica* restrict replicas, global const Portion* restrict portions,
-                   global const int* restrict partner, global const real* restrict force_x,
-                   global const real* restrict force_y, global const real* restrict force_z,
+                   global const int* restrict partner, global const real* restrict force,
                    global const real4* restrict energy, global const real* restrict frequency,
                    global const int* restrict status, global Report* restrict reports) {
     local real shared_sums[REDUCERS][SUMS];
@@ -179,7 +180,7 @@ kernel void reduce(global const Replica* restrict replicas, global const Portion
         fastest = fmax(fastest, frequency[grain]);
         bits |= status[grain];
         if (status[grain]) failed = min(failed, grain);
-        add_wall_forces(FIRST_SLOT(grain), partner, force_x, force_y, force_z, sums);
+        add_wall_forces(grain, partner, force, sums);
     }
     for (int q = 0; q < SUMS; ++q) shared_sums[lane][q] = sums[q];
     shared_most[lane][0] = moved;

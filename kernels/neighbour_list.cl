@@ -77,9 +77,7 @@ INLINE lanes3 nearest_apart(global const Replica* restrict replica, Deformation 
 
 /* Compares all grains in `box` with the lanes in `searching`. */
 INLINE void search_cells(global const Replica* restrict replica, CellBox box, mask searching, slots grain,
-                         lanes4 own, global const Motion* restrict motion,
-                         global const int* restrict cell_head, global const int* restrict cell_next,
-                         Rows* rows) {
+                         lanes4 own, CellLists cells, Rows* rows) {
     const Deformation f = deformation(replica, R(0));
     const real margin = replica->probe_gap + replica->skin;
     for (int k = box.z.first; k <= box.z.last; ++k)
@@ -87,8 +85,8 @@ INLINE void search_cells(global const Replica* restrict replica, CellBox box, ma
             for (int i = box.x.first; i <= box.x.last; ++i) {
                 const int there = cell_index(replica, wrapped(i, replica->span_x),
                                              wrapped(j, replica->span_y), wrapped(k, replica->span_z));
-                for (int other = cell_head[there]; other >= 0; other = cell_next[other]) {
-                    const real4 position = motion[other].position;
+                for (int other = cells.head[there]; other >= 0; other = cells.next[other]) {
+                    const real4 position = cells.motion[other].position;
                     const lanes3 apart = nearest_apart(
                         replica, f, (lanes3){position.x - own.x, position.y - own.y, position.z - own.z});
                     const lanes within = (own.w + position.w) + margin; /* the same bits from both sides */
@@ -101,22 +99,22 @@ INLINE void search_cells(global const Replica* restrict replica, CellBox box, ma
 
 /* Grains of a work-item that are close to each other search the box around all their cells together, if it is
    searchable(). */
-INLINE void near_grains(global const Replica* restrict replica, slots grain, mask is_grain, lanes4 own,
-                        global const Motion* restrict motion, global const int* restrict cell_head,
-                        global const int* restrict cell_next, int first, Rows* rows) {
+INLINE void near_grains(global const Replica* restrict replica, int first, mask is_grain, lanes4 own,
+                        CellLists cells, Rows* rows) {
+    const slots grain = first + LANE_NUMBERS;
     int begin = 0;
     while (begin < LANES) {
-        CellBox box = cells_around(replica, motion[first + begin].position);
+        CellBox box = cells_around(replica, cells.motion[first + begin].position);
         int end = begin + 1;
         for (; end < LANES; ++end) {
-            const real4 next = motion[first + end].position;
+            const real4 next = cells.motion[first + end].position;
             if (!(next.w > R(0))) continue;
             const CellBox both = joined(box, cells_around(replica, next));
             if (!searchable(replica, both)) break;
             box = both;
         }
         const mask searching = is_grain & AS_MASK(LANE_NUMBERS >= begin) & AS_MASK(LANE_NUMBERS < end);
-        search_cells(replica, box, searching, grain, own, motion, cell_head, cell_next, rows);
+        search_cells(replica, box, searching, grain, own, cells, rows);
         begin = end;
     }
 }
@@ -173,15 +171,15 @@ INLINE void find_previous(const Rows* rows, const slots* before, int count, slot
 
 WORK_GROUP(SEARCH_ITEMS)
 kernel void list_neighbours(const int block_count, global const Replica* restrict replicas,
-                            global const int* restrict blocks, global const int* restrict replica_of_block,
-                            global const Motion* restrict motion, global const int* restrict cell_head,
-                            global const int* restrict cell_next, global int* restrict partner,
-                            global real* restrict displacement, global real* restrict history,
-                            global real* restrict memory, global Track* restrict track,
-                            global int* restrict status) {
-    const int first = listed_grain(blocks, block_count, LANES);
+                            global const Block* restrict blocks, global const Motion* restrict motion,
+                            global const int* restrict cell_head, global const int* restrict cell_next,
+                            global int* restrict partner, global real* restrict displacement,
+                            global real* restrict history, global real* restrict memory,
+                            global Track* restrict track, global int* restrict status) {
+    const Block listed = listed_grains(blocks, block_count, LANES);
+    const int first = listed.first;
     if (first < 0) return;
-    global const Replica* restrict replica = replicas + replica_of_block[first / BLOCK];
+    global const Replica* restrict replica = replicas + listed.replica;
     const size_t row = FIRST_SLOT(first);
     const slots grain = first + LANE_NUMBERS;
     const lanes4 own = gather4((global const real4*)motion, grain * MOTION_VECTORS);
@@ -192,7 +190,7 @@ kernel void list_neighbours(const int block_count, global const Replica* restric
     Rows rows;
     rows.count = 0;
     for (int c = 0; c < SLOTS; ++c) rows.entry[c] = NO_ENTRY;
-    near_grains(replica, grain, is_grain, own, motion, cell_head, cell_next, first, &rows);
+    near_grains(replica, first, is_grain, own, (CellLists){motion, cell_head, cell_next}, &rows);
     near_walls(replica, is_grain, own, &rows);
     const mask full = AS_MASK(rows.count > SLOTS);
     if (ANY(full)) report_status(first, BITS(full, STATUS_SLOTS), status);
@@ -214,9 +212,10 @@ kernel void list_neighbours(const int block_count, global const Replica* restric
 /* partner_slot: the slot of the same contact in the neighbour's row. For walls and empty slots it is
    `slot_count`, one element beyond all rows, where the displacement is always zero. */
 WORK_GROUP(LIST_ITEMS)
-kernel void link_partner_slots(const int block_count, const int slot_count, global const int* restrict blocks,
-                               global const int* restrict partner, global int* restrict partner_slot) {
-    const int grain = listed_grain(blocks, block_count, 1);
+kernel void link_partner_slots(const int block_count, const int slot_count,
+                               global const Block* restrict blocks, global const int* restrict partner,
+                               global int* restrict partner_slot) {
+    const int grain = listed_grains(blocks, block_count, 1).first;
     if (grain < 0) return;
     const size_t row = FIRST_SLOT(grain);
     for (int c = 0; c < SLOTS; ++c) {

@@ -1,12 +1,5 @@
 /* Report that the host reads at the end of each interval of steps, one for each portion of a replica's
    grains. Shared with the host; only scalars and arrays of scalars, widest first. */
-#define PORTION_GRAINS 4096
-
-typedef struct {
-    int replica;
-    int first; /* index of the first grain within the replica */
-} Portion;
-
 typedef struct {
     real kinetic_energy;  /* [J] */
     real elastic_energy;  /* [J] */

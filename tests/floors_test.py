@@ -28,6 +28,7 @@ FLOORS = {
 }
 LONGEST_FILE = 400
 LONGEST_FUNCTION = 70
+MAX_ARGUMENTS = {"kernel": 16, "device function": 8}
 SOURCES = {".cpp", ".h", ".cl", ".py"}
 
 
@@ -127,6 +128,19 @@ def long_functions(root):
                 yield f"{file.relative_to(root)}:{line}: function of {length} lines, at most {LONGEST_FUNCTION}"
 
 
+def argument_counts(text):
+    """Kind, name and number of arguments of each kernel and device function."""
+    for kind, name, arguments in re.findall(r"^(kernel|INLINE)\b[\w\s*]*?\b(\w+)\(([^)]*)\) \{", text, re.M):
+        yield "kernel" if kind == "kernel" else "device function", name, len(arguments.split(","))
+
+
+def many_arguments(root):
+    for file in sorted((root / "kernels").glob("*.*")):
+        for kind, name, count in argument_counts(file.read_text()):
+            if count > MAX_ARGUMENTS[kind]:
+                yield f"{file.relative_to(root)}: {kind} {name} has {count} arguments, at most {MAX_ARGUMENTS[kind]}"
+
+
 def self_test():
     """Checks that the checker finds violations."""
     body = "void f(int a) {\n" + "    g();\n" * 80 + "}\nvoid g() {\n}\n"
@@ -134,14 +148,16 @@ def self_test():
     constructor = "    A(int a,\n      int b)\n        : a_(a) {\n        f();\n    }\n"
     assert list(functions(constructor)) == [(1, 5)], list(functions(constructor))
     assert list(defined_names("struct A {\n    int b;\nstd::vector<int> f(int a,\nconst int c = 3;\nTEST(A, b) {\n")) == ["A", "f", "c"]
+    assert list(argument_counts("kernel void f(int a,\n  global real* b) {\nINLINE lanes3 g(int a) {\n")) == [
+        ("kernel", "f", 2), ("device function", "g", 1)]
     assert floor_of("sim/engine.h") == "sim" and floor_of("vector") is None
 
 
 def main():
     self_test()
     root = pathlib.Path(sys.argv[1])
-    problems = [problem for rule in (strange_folders, wrong_includes, types_twice, test_names_twice, long_files, long_functions)
-                for problem in rule(root)]
+    rules = (strange_folders, wrong_includes, types_twice, test_names_twice, long_files, long_functions, many_arguments)
+    problems = [problem for rule in rules for problem in rule(root)]
     print("\n".join(problems) or f"{sum(1 for _ in sources(root))} files in order")
     return 1 if problems else 0
 

@@ -14,7 +14,7 @@ using real = double;
 #include "kernels/replica.h"
 #include "kernels/report.h"
 }  // namespace f64
-using Portion = f32::Portion;  // the same in both
+#include "kernels/block.h"
 #include "kernels/partner.h"
 #include "kernels/status.h"
 }  // namespace mcdem::sim

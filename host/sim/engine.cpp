@@ -157,10 +157,8 @@ Engine::Part Engine::part(const std::vector<char>& wanted) const {
     for (int r = 0; r < layout_.replicas(); ++r) {
         if (!wanted[r]) continue;
         part.replicas.push_back(r);
-        for (int block = layout_.first_block(r); block < layout_.first_block(r + 1); ++block)
-            part.blocks.push_back(block);
-        const auto portions = layout_.portions(r);
-        part.portions.insert(part.portions.end(), portions.begin(), portions.end());
+        std::ranges::copy(layout_.blocks(r), std::back_inserter(part.blocks));
+        std::ranges::copy(layout_.portions(r), std::back_inserter(part.portions));
     }
     return part;
 }
@@ -170,10 +168,10 @@ void Engine::choose(const std::vector<char>& active) {
     if (active == active_) return;
     active_ = active;
     working_ = part(active);
-    std::vector<int> first_blocks;
-    for (const int r : working_.replicas) first_blocks.push_back(layout_.first_block(r));
-    fields_.first_blocks.write(first_blocks.data(), 0, first_blocks.size() * sizeof(int));
-    fields_.blocks.write(working_.blocks.data(), 0, working_.blocks.size() * sizeof(int));
+    std::vector<Block> first_blocks;
+    for (const int r : working_.replicas) first_blocks.push_back({r, layout_.first_grain[r]});
+    fields_.first_blocks.write(first_blocks.data(), 0, first_blocks.size() * sizeof(Block));
+    fields_.blocks.write(working_.blocks.data(), 0, working_.blocks.size() * sizeof(Block));
     fields_.portions.write(working_.portions.data(), 0, working_.portions.size() * sizeof(Portion));
 }
 
@@ -228,14 +226,14 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     const std::size_t by_grain = groups(build_.list_items(), 1);
     auto& f = fields_;
     f.rebuilt.write(stale.portions.data(), 0, stale.portions.size() * sizeof(Portion));
-    f.rebuilt_blocks.write(stale.blocks.data(), 0, blocks * sizeof(int));
+    f.rebuilt_blocks.write(stale.blocks.data(), 0, stale.blocks.size() * sizeof(Block));
     kernels_.empty_cells(stale.portions.size(), f.replicas, f.rebuilt, f.cell_head);
-    kernels_.fill_cells(by_grain, blocks, f.replicas, f.rebuilt_blocks, f.replica_of_block, f.motion.now(0),
-                        f.cell_head, f.cell_next);
+    kernels_.fill_cells(by_grain, blocks, f.replicas, f.rebuilt_blocks, f.motion.now(0), f.cell_head,
+                        f.cell_next);
     kernels_.list_neighbours(groups(build_.search_items(), build_.lanes), blocks, f.replicas,
-                             f.rebuilt_blocks, f.replica_of_block, f.motion.now(0), f.cell_head, f.cell_next,
-                             f.partner, f.displacement.now(0), f.displacement_history, f.memory_of_contacts,
-                             f.tracks, f.status);
+                             f.rebuilt_blocks, f.motion.now(0), f.cell_head, f.cell_next, f.partner,
+                             f.displacement.now(0), f.displacement_history, f.memory_of_contacts, f.tracks,
+                             f.status);
     if (f.has_displacements())
         kernels_.link_partner_slots(by_grain, blocks, f.slot_count, f.rebuilt_blocks, f.partner,
                                     f.partner_slot);
@@ -253,15 +251,15 @@ void Engine::make_steps() {
     auto& f = fields_;
     const auto advance = [&](std::size_t groups, int step, int replicas, auto& blocks) {
         const int p = step % 2;
-        kernels_.advance(groups, step, replicas, f.replicas, f.materials, blocks, f.replica_of_block,
-                         f.stop_at, f.motion.now(p), f.motion.next(p), f.partner, f.partner_slot,
-                         f.displacement.now(p), f.displacement.next(p), f.displacement_history,
-                         f.memory_of_contacts, f.tracks, f.status);
+        kernels_.advance(groups, step, replicas, f.replicas, f.materials, blocks, f.stop_at, f.motion.now(p),
+                         f.motion.next(p), f.partner, f.partner_slot, f.displacement.now(p),
+                         f.displacement.next(p), f.displacement_history, f.memory_of_contacts, f.tracks,
+                         f.status);
     };
     int steps = 0, largest = 1;
     for (const int r : working_.replicas) {
         steps = std::max(steps, intervals_[r].steps);
-        largest = std::max(largest, layout_.first_block(r + 1) - layout_.first_block(r));
+        largest = std::max(largest, layout_.block_count(r));
     }
     const std::size_t blocks = working_.blocks.size();
     if (blocks / largest >= enough_replicas_)
@@ -271,14 +269,14 @@ void Engine::make_steps() {
 
 void Engine::measure() {
     auto& f = fields_;
-    kernels_.measure(working_.blocks.size(), f.replicas, f.materials, f.blocks, f.replica_of_block, f.stop_at,
-                     f.motion.now(0), f.partner, f.partner_slot, f.displacement.now(0), f.memory_of_contacts,
-                     f.tracks, f.force_x, f.force_y, f.force_z, f.overlap, f.arm, f.energy, f.frequency);
-    kernels_.reduce(working_.portions.size(), f.replicas, f.portions, f.partner, f.force_x, f.force_y,
-                    f.force_z, f.energy, f.frequency, f.status, f.reports);
+    kernels_.measure(working_.blocks.size(), f.replicas, f.materials, f.blocks, f.stop_at, f.motion.now(0),
+                     f.partner, f.partner_slot, f.displacement.now(0), f.memory_of_contacts, f.tracks,
+                     f.force, f.overlap, f.arm, f.energy, f.frequency);
+    kernels_.reduce(working_.portions.size(), f.replicas, f.portions, f.partner, f.force, f.energy,
+                    f.frequency, f.status, f.reports);
     if (f.has_cells())
         kernels_.cell_stress(working_.portions.size(), f.replicas, f.portions, f.stop_at, f.motion.now(0),
-                             f.partner, f.force_x, f.force_y, f.force_z, f.cell_moments);
+                             f.partner, f.force, f.cell_moments);
 }
 
 /// Stresses of active replicas that are cells, at these strains.

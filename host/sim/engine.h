@@ -52,7 +52,7 @@ struct ReplicaState {
 struct Readings {
     int first_replica = 0, last_replica = 0;
     std::size_t first_grain = 0;
-    std::vector<std::byte> motion, tracks, force_x, force_y, force_z, overlap, arm, partner;
+    std::vector<std::byte> motion, tracks, force, overlap, arm, partner;
     PendingCopies copies;  ///< into the vectors above; declared last, so it is waited for before they end
 };
 
@@ -105,9 +105,10 @@ public:
     void restore(const std::map<std::string, std::vector<std::byte>>& saved);
 
 private:
-    /// A subset of the replicas, and the blocks of their grains.
+    /// A subset of the replicas, and the blocks and portions of their grains.
     struct Part {
-        std::vector<int> replicas, blocks;
+        std::vector<int> replicas;
+        std::vector<Block> blocks;
         std::vector<Portion> portions;
     };
     Part part(const std::vector<char>& wanted) const;

@@ -121,9 +121,7 @@ Readings Engine::begin_reading(int first_replica, int last_replica) const {
     };
     begin(fields_.motion.copies[0], read.motion, reals_of_motion * real);
     begin(fields_.tracks, read.tracks, reals_of_track * real);
-    begin(fields_.force_x, read.force_x, slots * real);
-    begin(fields_.force_y, read.force_y, slots * real);
-    begin(fields_.force_z, read.force_z, slots * real);
+    begin(fields_.force, read.force, 3 * slots * real);
     begin(fields_.overlap, read.overlap, slots * real);
     begin(fields_.arm, read.arm, slots * real);
     begin(fields_.partner, read.partner, slots * sizeof(int));
@@ -181,9 +179,9 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
     const std::size_t first =
         (static_cast<std::size_t>(layout_.first_grain[replica]) - read.first_grain) * slots;
     const std::size_t count = padded * slots;
-    const auto x = reals(read.force_x, first, count), y = reals(read.force_y, first, count),
-               z = reals(read.force_z, first, count), overlap = reals(read.overlap, first, count),
+    const auto force = reals(read.force, 3 * first, 3 * count), overlap = reals(read.overlap, first, count),
                arm = reals(read.arm, first, count);
+    const std::size_t row = build_.lanes * slots;  // length of a row of forces, see kernels/measure.cl
     const int* const partner = reinterpret_cast<const int*>(read.partner.data()) + first;
     const PlateFace plate = plate_face(replicas_[replica], plate_z_[replica]);
     const Box box = deformed(replicas_[replica].box, strain_[replica]);
@@ -208,7 +206,8 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
         }
         contact.point = position[contact.grain] + arm[slot] * direction;
         if (contact.partner == wall_partner(Wall::plate)) contact.point = plate.foot(position[contact.grain]);
-        contact.force = {x[slot], y[slot], z[slot]};
+        const double* const along_x = &force[slot / row * 3 * row + slot % row];
+        contact.force = {along_x[0], along_x[row], along_x[2 * row]};
         contact.overlap = overlap[slot];
         found.push_back(contact);
     }

@@ -34,10 +34,9 @@ void Fields::visit_extents(const FieldExtents& extents, Make make) {
     make(cell_moments, extents.needs.cells ? 9 * extents.portions : 1, real);
     make(portions, extents.portions, sizeof(Portion));
     make(rebuilt, extents.portions, sizeof(Portion));
-    make(blocks, extents.blocks, sizeof(int));
-    make(rebuilt_blocks, extents.blocks, sizeof(int));
-    make(first_blocks, extents.replicas, sizeof(int));
-    make(replica_of_block, extents.blocks, sizeof(int));
+    make(blocks, extents.blocks, sizeof(Block));
+    make(rebuilt_blocks, extents.blocks, sizeof(Block));
+    make(first_blocks, extents.replicas, sizeof(Block));
     make_pair(motion, extents.grains, reals_of_motion * real);
     make(tracks, extents.grains, reals_of_track * real);
     make(status, extents.grains, sizeof(int));
@@ -49,9 +48,7 @@ void Fields::visit_extents(const FieldExtents& extents, Make make) {
     make_pair(displacement, moving_slots + 1, real);
     make(displacement_history, 4 * moving_slots, real);
     make(memory_of_contacts, slots * memory_rows(extents.needs).count, real);
-    make(force_x, slots, real);
-    make(force_y, slots, real);
-    make(force_z, slots, real);
+    make(force, 3 * slots, real);
     make(overlap, slots, real);
     make(arm, slots, real);
     make(cell_head, extents.cells, sizeof(int));
@@ -77,7 +74,6 @@ Fields::Fields(Device& device, const FieldExtents& extents, const Layout& layout
     const auto slots = static_cast<std::size_t>(extents.grains * extents.slots);
     has_cells_ = extents.needs.cells;
     slot_count = extents.needs.displacements ? static_cast<int>(slots) : 1;
-    replica_of_block.write(layout.replica_of_block.data());
     partner.write(std::vector<int>(slots, NO_PARTNER).data());
     partner_slot.write(std::vector<int>(static_cast<std::size_t>(slot_count), slot_count).data());
 }

@@ -14,7 +14,6 @@ namespace mcdem::inline sim {
 struct Constants;
 struct Materials;
 struct Blocks;
-struct ReplicaOfBlock;
 struct Portions;
 struct StopAt;
 struct Motion;
@@ -27,9 +26,7 @@ struct Tracks;
 struct Status;
 struct CellHead;
 struct CellNext;
-struct ForceX;
-struct ForceY;
-struct ForceZ;
+struct Force;
 struct Overlap;
 struct Arm;
 struct Energy;
@@ -99,7 +96,6 @@ struct Fields {
     Field<Portions> portions, rebuilt;     ///< per active portion
     Field<Blocks> blocks, rebuilt_blocks;  ///< per active block
     Field<Blocks> first_blocks;            ///< per active replica
-    Field<ReplicaOfBlock> replica_of_block;
     Pair<Motion> motion;
     Field<Tracks> tracks;
     Field<Status> status;
@@ -110,9 +106,7 @@ struct Fields {
     Pair<SurfaceDisplacement> displacement;  ///< with one more element at slot_count, always zero
     Field<DisplacementHistory> displacement_history;  ///< per slot, for each of the last four steps
     Field<ContactMemory> memory_of_contacts;          ///< rows of a grain, contiguous
-    Field<ForceX> force_x;
-    Field<ForceY> force_y;
-    Field<ForceZ> force_z;
+    Field<Force> force;                               ///< three rows of a grain, contiguous: along x, y and z
     Field<Overlap> overlap;
     Field<Arm> arm;
     Field<CellHead> cell_head;  ///< per cell
@@ -151,29 +145,26 @@ struct Kernels {
     Kernels(Device& device, const KernelBuild& build);
 
     Kernel<Field<Constants>, Field<Portions>, Field<CellHead>> empty_cells;
-    Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
-           Field<CellNext>>
-        fill_cells;
-    Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
-           Field<CellNext>, Field<Partner>, Now<SurfaceDisplacement>, Field<DisplacementHistory>,
-           Field<ContactMemory>, Field<Tracks>, Field<Status>>
+    Kernel<int, Field<Constants>, Field<Blocks>, Now<Motion>, Field<CellHead>, Field<CellNext>> fill_cells;
+    Kernel<int, Field<Constants>, Field<Blocks>, Now<Motion>, Field<CellHead>, Field<CellNext>,
+           Field<Partner>, Now<SurfaceDisplacement>, Field<DisplacementHistory>, Field<ContactMemory>,
+           Field<Tracks>, Field<Status>>
         list_neighbours;
     Kernel<int, int, Field<Blocks>, Field<Partner>, Field<PartnerSlot>> link_partner_slots;
-    Kernel<int, int, Field<Constants>, Field<Materials>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>,
-           Now<Motion>, Next<Motion>, Field<Partner>, Field<PartnerSlot>, Now<SurfaceDisplacement>,
+    Kernel<int, int, Field<Constants>, Field<Materials>, Field<Blocks>, Field<StopAt>, Now<Motion>,
+           Next<Motion>, Field<Partner>, Field<PartnerSlot>, Now<SurfaceDisplacement>,
            Next<SurfaceDisplacement>, Field<DisplacementHistory>, Field<ContactMemory>, Field<Tracks>,
            Field<Status>>
         advance;
-    Kernel<Field<Constants>, Field<Materials>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>,
-           Now<Motion>, Field<Partner>, Field<PartnerSlot>, Now<SurfaceDisplacement>, Field<ContactMemory>,
-           Field<Tracks>, Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>, Field<Arm>,
-           Field<Energy>, Field<Frequency>>
+    Kernel<Field<Constants>, Field<Materials>, Field<Blocks>, Field<StopAt>, Now<Motion>, Field<Partner>,
+           Field<PartnerSlot>, Now<SurfaceDisplacement>, Field<ContactMemory>, Field<Tracks>, Field<Force>,
+           Field<Overlap>, Field<Arm>, Field<Energy>, Field<Frequency>>
         measure;
-    Kernel<Field<Constants>, Field<Portions>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,
-           Field<Energy>, Field<Frequency>, Field<Status>, Field<Reports>>
+    Kernel<Field<Constants>, Field<Portions>, Field<Partner>, Field<Force>, Field<Energy>, Field<Frequency>,
+           Field<Status>, Field<Reports>>
         reduce;
-    Kernel<Field<Constants>, Field<Portions>, Field<StopAt>, Now<Motion>, Field<Partner>, Field<ForceX>,
-           Field<ForceY>, Field<ForceZ>, Field<CellMoments>>
+    Kernel<Field<Constants>, Field<Portions>, Field<StopAt>, Now<Motion>, Field<Partner>, Field<Force>,
+           Field<CellMoments>>
         cell_stress;
 
 private:

@@ -32,6 +32,13 @@ std::vector<int> spatial_order(const Packing& packing) {
 
 }  // namespace
 
+std::vector<Block> Layout::blocks(int replica) const {
+    std::vector<Block> all;
+    for (int first = first_grain[replica]; first < first_grain[replica + 1]; first += block)
+        all.push_back({replica, first});
+    return all;
+}
+
 std::vector<Portion> Layout::portions(int replica) const {
     std::vector<Portion> all;
     for (int first = 0; first < grain_count[replica]; first += PORTION_GRAINS)
@@ -48,7 +55,6 @@ Layout make_layout(const std::vector<Packing>& packings, int block) {
     for (const auto& packing : packings) {
         const int count = static_cast<int>(packing.size());
         const int blocks = (count + block - 1) / block;
-        layout.replica_of_block.insert(layout.replica_of_block.end(), blocks, layout.replicas());
         layout.grain_count.push_back(count);
         layout.first_grain.push_back(layout.first_grain.back() + blocks * block);
         layout.order.push_back(spatial_order(packing));

@@ -10,15 +10,15 @@
 namespace mcdem::inline sim {
 
 struct Layout {
-    int block = 16;                ///< grains per block
-    std::vector<int> first_grain;  ///< of each replica, plus the end of the last one
-    std::vector<int> grain_count;  ///< of each replica
-    std::vector<int> replica_of_block;
+    int block = 16;                       ///< grains per block
+    std::vector<int> first_grain;         ///< of each replica, plus the end of the last one
+    std::vector<int> grain_count;         ///< of each replica
     std::vector<std::vector<int>> order;  ///< replica, position in the array -> the user's grain number
 
     int replicas() const { return static_cast<int>(grain_count.size()); }
     int grains() const { return first_grain.back(); }  ///< padded, all replicas
-    int first_block(int replica) const { return first_grain[replica] / block; }
+    int block_count(int replica) const { return (first_grain[replica + 1] - first_grain[replica]) / block; }
+    std::vector<Block> blocks(int replica) const;
     /// Portions of a replica's grains for sums by work-groups.
     std::vector<Portion> portions(int replica) const;
 };

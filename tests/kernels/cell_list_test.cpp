@@ -34,7 +34,7 @@ struct CellScene {
     void fill(const std::vector<int>& chosen) {
         mcdem::FieldExtents extents;
         extents.replicas = replicas.size();
-        extents.blocks = layout.replica_of_block.size();
+        extents.blocks = static_cast<std::uint64_t>(layout.grains() / layout.block);
         for (int count : layout.grain_count) extents.portions += mcdem::portion_count(count);
         extents.grains = layout.grains();
         extents.cells = cell_head.size();
@@ -45,18 +45,17 @@ struct CellScene {
         fields.motion.copies[0].write(motion.data());
         fields.cell_head.write(cell_head.data());
         fields.cell_next.write(cell_next.data());
-        std::vector<int> blocks;
-        for (int r : chosen)
-            for (int b = layout.first_block(r); b < layout.first_block(r + 1); ++b) blocks.push_back(b);
+        std::vector<mcdem::Block> blocks;
         std::vector<mcdem::Portion> portions;
-        for (int r : chosen)
-            for (const mcdem::Portion& portion : layout.portions(r)) portions.push_back(portion);
+        for (int r : chosen) {
+            std::ranges::copy(layout.blocks(r), std::back_inserter(blocks));
+            std::ranges::copy(layout.portions(r), std::back_inserter(portions));
+        }
         fields.rebuilt.write(portions.data(), 0, portions.size() * sizeof(mcdem::Portion));
-        fields.rebuilt_blocks.write(blocks.data(), 0, blocks.size() * sizeof(int));
+        fields.rebuilt_blocks.write(blocks.data(), 0, blocks.size() * sizeof(mcdem::Block));
         program.empty_cells(portions.size(), fields.replicas, fields.rebuilt, fields.cell_head);
         program.fill_cells(blocks.size(), static_cast<int>(blocks.size()), fields.replicas,
-                           fields.rebuilt_blocks, fields.replica_of_block, fields.motion.now(0),
-                           fields.cell_head, fields.cell_next);
+                           fields.rebuilt_blocks, fields.motion.now(0), fields.cell_head, fields.cell_next);
         fields.cell_head.read(cell_head.data());
         fields.cell_next.read(cell_next.data());
     }

@@ -28,14 +28,14 @@ Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Ve
         for (int axis = 0; axis < 3; ++axis)
             motion[12 * i + static_cast<std::size_t>(axis)] = static_cast<float>(position[i][axis]);
     std::vector<int> partner(rows, NO_PARTNER), used(position.size(), 0);
-    std::array<std::vector<float>, 3> force;
-    for (auto& component : force) component.assign(rows, 0);
+    std::vector<float> force(3 * rows, 0);
     for (const Contact& c : contacts) {
         const auto grain = static_cast<std::size_t>(c.grain);
-        const std::size_t slot = slot_place(kernels, grain, static_cast<std::size_t>(used[grain]++));
-        partner[slot] = c.partner;
+        const auto slot = static_cast<std::size_t>(used[grain]++);
+        partner[slot_place(kernels, grain, slot)] = c.partner;
         for (int axis = 0; axis < 3; ++axis)
-            force[static_cast<std::size_t>(axis)][slot] = static_cast<float>(c.force[axis]);
+            force[force_place(kernels, grain, static_cast<std::size_t>(axis), slot)] =
+                static_cast<float>(c.force[axis]);
     }
     const mcdem::Portion portion{0, 0};
     const int step = 0;
@@ -44,22 +44,18 @@ Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Ve
     mcdem::Field<Steps> steps(device(), 1, sizeof step);
     mcdem::Field<Grains> grains(device(), position.size(), 12 * sizeof(float));
     mcdem::Field<Partner> partners(device(), rows, sizeof(int));
-    mcdem::Field<Force> x(device(), rows, sizeof(float)), y(device(), rows, sizeof(float)),
-        z(device(), rows, sizeof(float));
+    mcdem::Field<Force> forces(device(), 3 * rows, sizeof(float));
     mcdem::Field<Moments> out(device(), 9, sizeof(float));
     replicas.write(&replica);
     portions.write(&portion);
     steps.write(&step);
     grains.write(motion.data());
     partners.write(partner.data());
-    x.write(force[0].data());
-    y.write(force[1].data());
-    z.write(force[2].data());
+    forces.write(force.data());
     const cl::Program program = with_kernel("", kernels);
     mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Portions>, mcdem::Field<Steps>, mcdem::Field<Grains>,
-                  mcdem::Field<Partner>, mcdem::Field<Force>, mcdem::Field<Force>, mcdem::Field<Force>,
-                  mcdem::Field<Moments>>(device(), program, "cell_stress", 64)(
-        1, replicas, portions, steps, grains, partners, x, y, z, out);
+                  mcdem::Field<Partner>, mcdem::Field<Force>, mcdem::Field<Moments>>(
+        device(), program, "cell_stress", 64)(1, replicas, portions, steps, grains, partners, forces, out);
     Eigen::Matrix<float, 3, 3, Eigen::RowMajor> sums;
     out.read(sums.data());
     return sums.cast<double>();

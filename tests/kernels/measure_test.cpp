@@ -12,20 +12,20 @@ struct Grains {
         const KernelBuild kernels = build(Precision::single_precision);
         const std::size_t rows = static_cast<std::size_t>((count + 15) / 16 * 16 * slots);
         partner.assign(rows, NO_PARTNER);
-        for (auto& component : force) component.assign(rows, 0);
+        force.assign(3 * rows, 0);
         for (int i = 0; i < count; ++i) {
             for (int k = 0; k < 4; ++k) energy.push_back(static_cast<float>(uniform(0, 1)));
             frequency.push_back(static_cast<float>(uniform(0, 1)));
             for (int slot = 0; slot < slots; ++slot) {
                 const std::size_t place = slot_place(kernels, i, slot);
                 partner[place] = slot < 6 ? WALL_PARTNER(slot) : slot < 9 ? i / 2 : NO_PARTNER;
-                for (auto& component : force) component[place] = static_cast<float>(uniform(-1, 1));
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    force[force_place(kernels, i, axis, slot)] = static_cast<float>(uniform(-1, 1));
             }
         }
     }
-    std::vector<float> energy, frequency;
+    std::vector<float> energy, frequency, force;
     std::vector<int> partner, status;
-    std::array<std::vector<float>, 3> force;
 };
 
 mcdem::f32::Report reduced(const Grains& grains, const mcdem::Portion& portion) {
@@ -42,8 +42,7 @@ mcdem::f32::Report reduced(const Grains& grains, const mcdem::Portion& portion) 
     mcdem::Field<Replicas> replicas(device(), 1, sizeof replica);
     mcdem::Field<Portions> portions(device(), 1, sizeof portion);
     mcdem::Field<Partner> partner(device(), grains.partner.size(), sizeof(int));
-    mcdem::Field<Force> x(device(), grains.partner.size(), sizeof(float)),
-        y(device(), grains.partner.size(), sizeof(float)), z(device(), grains.partner.size(), sizeof(float));
+    mcdem::Field<Force> force(device(), grains.force.size(), sizeof(float));
     mcdem::Field<Energy> energy(device(), grains.status.size(), 4 * sizeof(float));
     mcdem::Field<Frequency> frequency(device(), grains.status.size(), sizeof(float));
     mcdem::Field<Status> status(device(), grains.status.size(), sizeof(int));
@@ -51,17 +50,15 @@ mcdem::f32::Report reduced(const Grains& grains, const mcdem::Portion& portion) 
     replicas.write(&replica);
     portions.write(&portion);
     partner.write(grains.partner.data());
-    x.write(grains.force[0].data());
-    y.write(grains.force[1].data());
-    z.write(grains.force[2].data());
+    force.write(grains.force.data());
     energy.write(grains.energy.data());
     frequency.write(grains.frequency.data());
     status.write(grains.status.data());
     const cl::Program program = with_kernel("", build(Precision::single_precision));
     mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Portions>, mcdem::Field<Partner>, mcdem::Field<Force>,
-                  mcdem::Field<Force>, mcdem::Field<Force>, mcdem::Field<Energy>, mcdem::Field<Frequency>,
-                  mcdem::Field<Status>, mcdem::Field<Reports>>(device(), program, "reduce", 64)(
-        1, replicas, portions, partner, x, y, z, energy, frequency, status, reports);
+                  mcdem::Field<Energy>, mcdem::Field<Frequency>, mcdem::Field<Status>, mcdem::Field<Reports>>(
+        device(), program, "reduce", 64)(1, replicas, portions, partner, force, energy, frequency, status,
+                                         reports);
     mcdem::f32::Report report;
     reports.read(&report);
     return report;
@@ -83,7 +80,7 @@ TEST(Reduce, SumsAndMaximaAreThoseOfAllGrains) {
             fastest = std::max<double>(fastest, grains.frequency[i]);
             for (std::size_t wall = 0; wall < 6; ++wall)
                 for (std::size_t axis = 0; axis < 3; ++axis)
-                    walls[3 * wall + axis] -= grains.force[axis][slot_place(kernels, i, wall)];
+                    walls[3 * wall + axis] -= grains.force[force_place(kernels, i, axis, wall)];
         }
         EXPECT_NEAR(report.kinetic_energy, kinetic, 1e-5 * kinetic);
         EXPECT_NEAR(report.elastic_energy, elastic, 1e-5 * elastic);

@@ -8,7 +8,7 @@ namespace {
 constexpr int quantities = 7, sums = quantities + 2, slots = 16;
 
 const char* const sum_kernel = R"(
-WORK_GROUP(STEP_ITEMS) kernel void sum_rows(global const int* blocks, global const real* values, global real* out) {
+WORK_GROUP(STEP_ITEMS) kernel void sum_rows(global const Block* blocks, global const real* values, global real* out) {
     MEMORY_OF_WORK_ITEM
     (void)table;
     const int first = FIRST_GRAIN(blocks[get_group_id(0)]);
@@ -33,18 +33,18 @@ WORK_GROUP(STEP_ITEMS) kernel void sum_rows(global const int* blocks, global con
 std::vector<float> summed(const std::vector<float>& values, KernelBuild kernels) {
     const int grains = static_cast<int>(values.size()) / (quantities * slots);
     const cl::Program program = with_kernel(sum_kernel, kernels);
-    struct Numbers;
+    struct Blocks;
     struct Values;
     struct Sums;
-    std::vector<int> numbers(grains / kernels.block());
-    std::iota(numbers.begin(), numbers.end(), 0);
-    mcdem::Field<Numbers> blocks(device(), numbers.size(), sizeof(int));
+    std::vector<mcdem::Block> all;
+    for (int first = 0; first < grains; first += kernels.block()) all.push_back({0, first});
+    mcdem::Field<Blocks> blocks(device(), all.size(), sizeof(mcdem::Block));
     mcdem::Field<Values> in(device(), values.size(), sizeof(float));
     mcdem::Field<Sums> out(device(), std::size_t(grains) * sums, sizeof(float));
-    blocks.write(numbers.data());
+    blocks.write(all.data());
     in.write(values.data());
-    mcdem::Kernel<mcdem::Field<Numbers>, mcdem::Field<Values>, mcdem::Field<Sums>>(
-        device(), program, "sum_rows", kernels.work_items())(numbers.size(), blocks, in, out);
+    mcdem::Kernel<mcdem::Field<Blocks>, mcdem::Field<Values>, mcdem::Field<Sums>>(
+        device(), program, "sum_rows", kernels.work_items())(all.size(), blocks, in, out);
     std::vector<float> found(std::size_t(grains) * sums);
     out.read(found.data());
     return found;

@@ -18,8 +18,23 @@ TEST(Layout, PadsEveryReplicaToWholeBlocks) {
     const auto layout = mcdem::make_layout(packings, 16);
     EXPECT_EQ(layout.first_grain, (std::vector<int>{0, 16, 32, 64, 128, 208}));
     EXPECT_EQ(layout.grain_count, (std::vector<int>{1, 16, 17, 64, 65}));
-    EXPECT_EQ(layout.replica_of_block, (std::vector<int>{0, 1, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4}));
-    EXPECT_EQ(layout.first_block(4), 8);
+    std::vector<std::pair<int, int>> blocks;  // replica and first grain
+    for (int r = 0; r < layout.replicas(); ++r)
+        for (const mcdem::Block& block : layout.blocks(r)) blocks.emplace_back(block.replica, block.first);
+    EXPECT_EQ(blocks, (std::vector<std::pair<int, int>>{{0, 0},
+                                                        {1, 16},
+                                                        {2, 32},
+                                                        {2, 48},
+                                                        {3, 64},
+                                                        {3, 80},
+                                                        {3, 96},
+                                                        {3, 112},
+                                                        {4, 128},
+                                                        {4, 144},
+                                                        {4, 160},
+                                                        {4, 176},
+                                                        {4, 192}}));
+    EXPECT_EQ(layout.block_count(4), 5);
     EXPECT_EQ(layout.grains(), 208);
 }
 
