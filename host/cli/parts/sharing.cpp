@@ -90,8 +90,7 @@ int compute_here(const SharedWork& work, PartedWork& parts, const std::string& d
     return failed(work, error);
 }
 
-std::vector<std::string> part_words(const SharingOptions& options) {
-    std::vector<std::string> words = words_of(options);
+std::vector<std::string> program_and(std::vector<std::string> words) {
     words.insert(words.begin(), this_program().string());
     return words;
 }
@@ -194,7 +193,7 @@ int compute_on_all_devices(const SharedWork& work, PartedWork& parts, const Shar
                          info.name, devices.front());
     if (devices.size() == 1) return compute_here(work, parts, std::to_string(devices.front()));
     spdlog::info("{} devices, a process on each", devices.size());
-    const std::vector<std::string> words = part_words(options);
+    const std::vector<std::string> words = program_and(words_of(options));
     std::vector<int> left_devices = devices;
     return until_merged(work, parts, [&](const Numbers& left) {
         const int code = Dealing(words, left, left_devices).all();
@@ -256,15 +255,10 @@ int merge_only(const SharedWork& work, PartedWork& parts) {
 
 int compute_by_slurm(const SharedWork& work, PartedWork& parts, const SharingOptions& options,
                      const std::string& device) {
-    SlurmJob job;
-    job.folder = work.out / "slurm";
-    job.words = part_words(options);
+    SlurmJob job{work.out / "slurm", program_and(words_of(options)), program_and(words_of(options, true)),
+                 options};
     if (!device.empty() && device != all_devices) job.words.insert(job.words.end(), {"--device", device});
-    job.tasks = options.slurm_tasks;
-    job.partition = options.slurm_partition;
-    job.time = options.slurm_time;
-    job.lines_file = options.slurm_lines;
-    const bool is_next = is_next_job(job);
+    job.next.push_back("--no-wait");
     for (Numbers left; !(left = left_to_compute(parts)).empty();) {
         const std::string number = submit(job, left);
         if (options.no_wait) {
@@ -291,7 +285,7 @@ int compute_by_slurm(const SharedWork& work, PartedWork& parts, const SharingOpt
             number, (job.folder / "*.log").string());
         return exit_failed;
     }
-    return is_next ? exit_done : all_is_merged;
+    return is_next_job() ? exit_done : all_is_merged;
 }
 
 /// Computes what is missing and merges, or what the options choose of it. Signals interrupt all of it.
@@ -361,13 +355,14 @@ void add_sharing_options(CLI::App& command, SharingOptions& options, std::string
         option->needs(slurm)->group(group);
 }
 
-std::vector<std::string> words_of(const SharingOptions& options) {
+std::vector<std::string> words_of(const SharingOptions& options, bool all) {
     std::vector<std::string> words;
     for (const CLI::App* app = options.command; app->get_parent(); app = app->get_parent())
         words.insert(words.begin(), app->get_name());
     for (const CLI::Option* option : options.command->get_options()) {
         const std::string name = option->get_name();
-        if (option->get_group() == group || name == "--device" || name == "--resume") continue;
+        const bool is_how = option->get_group() == group || name == "--device";
+        if (name == "--resume" || (is_how && !all)) continue;
         for (const std::string& value : option->results()) {
             if (!option->get_positional()) words.push_back(name);
             if (option->get_items_expected_max() > 0) words.push_back(value);
