@@ -7,7 +7,6 @@
 #include <csignal>
 #include <deque>
 #include <list>
-#include <map>
 #include <thread>
 
 #include "cli/parts/ranks.h"
@@ -95,8 +94,6 @@ std::vector<std::string> program_and(std::vector<std::string> words) {
     return words;
 }
 
-constexpr int max_kills = 3;  ///< per part
-
 struct Running {
     std::size_t part;
     int device;
@@ -104,9 +101,8 @@ struct Running {
 };
 
 /// Distributes parts to the devices of this machine, one process per device: runs `words --part K --device D`
-/// for every part. A device whose process fails is removed from `devices`, and another one gets the part.
-/// After a signal the part is tried again on any device; it is given up when its processes were killed three
-/// times. The caller has an Interrupt.
+/// for every part. A device whose process fails is removed from `devices`, and another one gets the part. A
+/// part whose process was ended by a signal remains missing. The caller has an Interrupt.
 class Dealing {
 public:
     Dealing(const std::vector<std::string>& words, const std::vector<std::size_t>& parts,
@@ -165,12 +161,11 @@ private:
             spdlog::warn("part {}: its process on device {} was ended by signal {}", one.part, one.device,
                          end.signal);
             free_.push_back(one.device);
-            if (++kills_[one.part] >= max_kills) return;
-        } else {
-            spdlog::warn("part {}: has failed on device {}, which is left out from here on", one.part,
-                         one.device);
-            std::erase(devices_, one.device);
+            return;
         }
+        spdlog::warn("part {}: has failed on device {}, which is left out from here on", one.part,
+                     one.device);
+        std::erase(devices_, one.device);
         parts_.push_back(one.part);
     }
 
@@ -180,7 +175,6 @@ private:
     std::vector<int>& devices_;
     std::vector<int> free_;
     std::list<Running> running_;
-    std::map<std::size_t, int> kills_;
     Progress progress_{stderr, progress_style(stderr)};
     int code_ = exit_done;
 };
