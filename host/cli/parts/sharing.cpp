@@ -228,22 +228,11 @@ int compute_as_rank(const SharedWork& work, const std::string& device) {
     }
 }
 
-/// "3, 5-7"
-std::string ranges_text(const Numbers& numbers) {
-    std::vector<std::string> ranges;
-    for (std::size_t k = 0, last = 0; k < numbers.size(); k = last + 1) {
-        for (last = k; last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1;) ++last;
-        ranges.push_back(last == k ? std::to_string(numbers[k])
-                                   : fmt::format("{}-{}", numbers[k], numbers[last]));
-    }
-    return fmt::format("{}", fmt::join(ranges, ", "));
-}
-
 int merge_only(const SharedWork& work, PartedWork& parts) {
     const Numbers left = left_to_compute(parts);
     if (left.empty()) return all_is_merged;
     spdlog::error("{}: {} part{} missing: {}; the command without --merge computes what is missing",
-                  work.out.string(), left.size(), left.size() == 1 ? " is" : "s are", ranges_text(left));
+                  work.out.string(), left.size(), left.size() == 1 ? " is" : "s are", fmt::join(left, ", "));
     return exit_failed;
 }
 
