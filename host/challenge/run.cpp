@@ -143,13 +143,7 @@ private:
             wanted[name] = std::to_string(value);
         wanted["--candidates"] = fmt::format("{}", fmt::join(library.candidates, ","));
         wanted["--seed"] = std::to_string(options_.seed);
-        const fs::path file = manifest_file(options_.out);
-        if (fs::exists(file) && !read_manifest(file) && missing_cases().size() < challenge_.cases.size())
-            throw InputError(
-                fmt::format("{}: is damaged, and cases were answered with the options that it held: "
-                            "restore it from a copy, or give another folder (--out)",
-                            file.string()));
-        keep_manifest(file, wanted);
+        keep_manifest(manifest_file(options_.out), wanted);
     }
     void expect_device(const Device& device) const {
         keep_manifest(device_file(options_.out), {{device_description, device.description()}});

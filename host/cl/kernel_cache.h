@@ -1,5 +1,4 @@
-// The folder in which PoCL caches compiled kernels. PoCL finds no device if it cannot write this folder, and
-// crashes on files truncated by a power failure.
+// The folder in which PoCL caches compiled kernels. PoCL finds no device if it cannot write this folder.
 #pragma once
 #include <filesystem>
 
@@ -12,8 +11,8 @@ inline void (*opencl_started)() = [] {};
 std::filesystem::path kernel_cache_folder();
 
 /// Must be called before OpenCL is first used. If the folder is not writable, sets POCL_CACHE_DIR to a
-/// private folder in the temporary directory. Removes truncated files, which PoCL then compiles again, and
-/// the empty temporary files that PoCL left more than a day ago.
+/// private folder in the temporary directory. Removes the empty temporary files that PoCL left more than a
+/// day ago.
 void prepare_kernel_cache();
 
 }  // namespace mcdem::opencl

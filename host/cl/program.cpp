@@ -10,7 +10,6 @@
 
 #include "cl/held_signals.h"
 #include "cl/kernel_sources.h"
-#include "cl/process_limits.h"
 #include "core/errors.h"
 
 namespace mcdem::inline opencl {
@@ -73,7 +72,6 @@ std::string program_text() {
 }
 
 cl::Program build_program(const Device& device, const KernelBuild& build) {
-    expect_room_for_kernels();
     // -w: warnings about the device's own headers and vector widths do not help the user.
     const auto options = fmt::format(
         "-w -cl-std=CL1.2 -DMCDEM_DOUBLE={} -DLANES={} -DSLOTS={} -DBLOCK={} "

@@ -51,29 +51,6 @@ void add_file(Run& run, const ResultFile& file, const std::filesystem::path& pat
     }
 }
 
-bool has_moved(const std::filesystem::path& file_or_folder, const std::vector<std::filesystem::path>& files) {
-    try {
-        return result_files(file_or_folder) != files;
-    } catch (const InputError&) {
-        return false;
-    }
-}
-
-/// Reads the files of `result_files`. A run that continues or ends in the meantime moves its scans to other
-/// files, so missing files are searched again.
-template <class Read>
-auto read_settled(const std::filesystem::path& file_or_folder, Read read) {
-    constexpr int max_tries = 20;
-    std::vector<std::filesystem::path> files;
-    for (int tries = 1;; ++tries) try {
-            files.clear();
-            files = result_files(file_or_folder);
-            return read(files);
-        } catch (const InputError&) {
-            if (tries == max_tries || !has_moved(file_or_folder, files)) throw;
-        }
-}
-
 }  // namespace
 
 Run read_run_header(const std::vector<std::filesystem::path>& files) {
@@ -83,14 +60,12 @@ Run read_run_header(const std::vector<std::filesystem::path>& files) {
 }
 
 Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what, const StopWanted& stop_wanted) {
-    return read_settled(file_or_folder, [&](const std::vector<std::filesystem::path>& files) {
-        Run run;
-        for (const auto& file : files)
-            guarded(file, [&] {
-                add_file(run, ResultFile(file), file, what, &file == &files.front(), stop_wanted);
-            });
-        return run;
-    });
+    const auto files = result_files(file_or_folder);
+    Run run;
+    for (const auto& file : files)
+        guarded(file,
+                [&] { add_file(run, ResultFile(file), file, what, &file == &files.front(), stop_wanted); });
+    return run;
 }
 
 const ResultFile& ResultFiles::open(std::size_t index) {
@@ -107,20 +82,16 @@ const ResultFile& ResultFiles::checked(std::size_t index, std::size_t replica) {
     return file;
 }
 
-RunReader::RunReader(const std::filesystem::path& file_or_folder) {
-    read_settled(file_or_folder, [&](const std::vector<std::filesystem::path>& paths) {
-        files_ = std::make_unique<ResultFiles>(paths);
-        run_ = {};
-        first_scan_.clear();
-        for (std::size_t f = 0; f < paths.size(); ++f) {
-            std::vector<std::size_t> first;
-            for (const auto& recording : run_.recordings) first.push_back(recording.scans.size());
-            guarded(paths[f],
-                    [&] { add_file(run_, files_->open(f), paths[f], ReadWhat::observables, f == 0); });
-            first.resize(run_.recordings.size(), 0);
-            first_scan_.push_back(std::move(first));
-        }
-    });
+RunReader::RunReader(const std::filesystem::path& file_or_folder)
+    : files_(std::make_unique<ResultFiles>(result_files(file_or_folder))) {
+    const auto& paths = files_->paths();
+    for (std::size_t f = 0; f < paths.size(); ++f) {
+        std::vector<std::size_t> first;
+        for (const auto& recording : run_.recordings) first.push_back(recording.scans.size());
+        guarded(paths[f], [&] { add_file(run_, files_->open(f), paths[f], ReadWhat::observables, f == 0); });
+        first.resize(run_.recordings.size(), 0);
+        first_scan_.push_back(std::move(first));
+    }
 }
 
 RunReader::~RunReader() = default;

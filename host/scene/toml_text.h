@@ -10,8 +10,9 @@
 
 namespace mcdem::inline scene {
 
-/// toml::parse, which also throws toml::parse_error if names contain more than `max_dots` dots in total.
-toml::table parse_toml(std::string_view text, std::string_view source = {}, std::size_t max_dots = 5000);
+/// toml::parse, which also throws toml::parse_error if the text has more than 50,000 dots: the parser is
+/// recursive in the parts of a dotted name, so a few hundred thousand would overflow the stack.
+toml::table parse_toml(std::string_view text, std::string_view source = {});
 
 /// A table with the single key "value"; nothing if the text is not a value of TOML.
 std::optional<toml::table> parse_value(const std::string& text);

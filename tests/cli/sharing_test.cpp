@@ -73,21 +73,19 @@ protected:
 };
 
 TEST_F(SharingTest, AJobScriptPassesArgumentsUnchanged) {
-    SlurmJob job;
-    job.words = {"printf", "%s|"};
-    job.words.insert(job.words.end(), odd_words.begin(), odd_words.end());
-    job.lines_file = path("lines");
-    job.partition = "a 'b' $(touch hacked)";
+    SharingOptions options;
+    options.slurm_lines = path("lines");
+    std::vector<std::string> words{"printf", "%s|"};
+    words.insert(words.end(), odd_words.begin(), odd_words.end());
+    const std::vector<std::string> next{"bash", "-c", "printf \"$0|$MCDEM_SLURM_BEFORE\"", "it's next"};
+    const SlurmJob job{path("slurm"), words, next, options};
     std::ofstream(path("lines")) << "#SBATCH --account=mine";
     std::ofstream(path("job.sh")) << job_script(job, {3, 5});
     std::string expected;
     for (const auto& word : odd_words) expected += word + "|";
     EXPECT_EQ(output_of({"env", "SLURM_ARRAY_TASK_ID=1", "bash", path("job.sh"), "part"})->out,
               expected + "--part|5|");
-    EXPECT_EQ(output_of({"bash", path("job.sh"), "next"})->out,
-              expected +
-                  "--slurm|--no-wait|--slurm-tasks|1|--slurm-partition|a 'b' $(touch hacked)|--slurm-lines|" +
-                  path("lines").string() + "|");
+    EXPECT_EQ(output_of({"bash", path("job.sh"), "next", "17"})->out, "it's next|17 3 5");
     EXPECT_THAT(job_script(job, {}), HasSubstr("--slurm-lines.\n#SBATCH --account=mine\nparts=()\n"));
 }
 

@@ -113,13 +113,14 @@ def an_interrupted_merge_is_called_interrupted(place):
     program.write_text("#!/bin/sh\ncase \"$*\" in *--merge*) exit 130;; *--alike*) echo 0;; esac\n")
     program.chmod(0o755)
     environment = {"PYTHONPATH": str(PACKAGE), "MCDEM_PROGRAM": str(program)}
-    said = finish(place.start([sys.executable, "-m", "mcdem.program", "mcdem.distributed", "run", "sweep.toml"],
-                              environment), exit_codes=(130,))
+    words = [sys.executable, "-m", "mcdem.program", "mcdem.distributed", "3", "", "run", "sweep.toml"]
+    said = finish(place.start(words, environment), exit_codes=(130,))
     assert "could not be merged" not in said and "Traceback" not in said, said
 
 
 def says_what_is_wrong(place):
     """Bad input, and the message if packages are missing."""
+    assert "a command is needed" in finish(distribute(place, []), exit_codes=(2,))
     said = finish(distribute(place, [*command_of("sweep.toml", "dask"), "--set", "nothing=1"]), exit_codes=(2,))
     assert "mcdem: " in said and "nothing" in said and "Traceback" not in said, said
     for scheduler in "tcp://127.0.0.1:1", "sweep.toml":

@@ -156,6 +156,10 @@ class Cluster:
         for node in nodes:
             self._ask("scontrol", "update", f"nodename={node}", "state=down", "reason=lost")
 
+    def jobs(self):
+        """Numbers of the jobs in the queue, the oldest first."""
+        return sorted(set(self._ask("squeue", "--noheader", "--format=%F").split()), key=int)
+
     def wait_for_jobs(self):
         """Waits until no job is running or pending: jobs would remain after their folder or Slurm is removed."""
         wait_until(lambda: not self._ask("squeue", "--noheader"), "the last job to end")

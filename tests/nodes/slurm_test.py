@@ -50,7 +50,7 @@ def goes_on_after_a_cancelled_job(place):
     (place.path / "held" / str(held[0])).unlink()  # one part is finished
     parts = PartsSeen(place.path / "jobs/parts")
     shared_runs.wait_until(lambda: parts.look() or parts.inodes, "a part")
-    array, following, _ = (place.path / "jobs/slurm/jobs").read_text().splitlines()
+    array, following = cluster.jobs()
     place.run(["scancel", "--signal=KILL", "--full", array], cluster.environment)
     place.run(["scancel", array], cluster.environment)
     said = finish(process, exit_codes=(1,))

@@ -12,6 +12,7 @@
 #include "core/container.h"
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "diagnose/infer/effects.h"
 #include "experiment/instrument.h"
 #include "io/result_folder.h"
 #include "io/results.h"
@@ -197,41 +198,27 @@ void make_experiment(const FromRunCommand& command) {
 }
 
 void add_unstated_errors(CLI::App& sub, Instrument& instrument) {
-    const auto add = [&](const std::string& name, double& value, const std::string& unit,
-                         const std::string& help, const CLI::Validator& check) {
-        sub.add_option(name, value, help)->type_name(unit)->check(check);
+    const auto add = [&](const char* option, double& value, const char* unit, const CLI::Validator& check,
+                         std::string_view help) {
+        sub.add_option(option, value, fmt::format("Unstated error: {}", help))->type_name(unit)->check(check);
     };
-    const CLI::Range bias(-0.5, 0.5);
-    add("--force-bias", instrument.force_bias, "FRACTION",
-        "Unstated error: contact forces are measured too large by this fraction", bias);
-    add("--threshold-shift", instrument.threshold_shift, "N",
-        "Unstated error: the true force threshold is higher by this [N]", CLI::Range(-1.0, 1.0));
-    add("--position-bias", instrument.position_bias, "FRACTION",
-        "Unstated error: lengths are measured too large by this fraction", CLI::Range(-0.05, 0.05));
-    add("--strain-offset", instrument.strain_offset, "M",
-        "Unstated error: plate positions are measured too high by this [m]", CLI::Range(-1.0, 1.0));
-    add("--gauge-drift", instrument.gauge_drift, "FRACTION",
-        "Unstated error: relative error of the load cell's gain at the end of the last cycle; it grows in "
-        "proportion to the plate's path",
-        bias);
-    add("--zero-drift", instrument.zero_drift, "FRACTION",
-        "Unstated error: offset of the load cell at the end of the last cycle, over the maximum top "
-        "force; it grows in proportion to the plate's path",
-        bias);
-    add("--gauge-hysteresis", instrument.gauge_hysteresis, "FRACTION",
-        "Unstated error: excess of the top force during unloading, at half the maximum force, over the "
-        "maximum force",
-        bias);
-    add("--force-lag", instrument.force_lag, "M",
-        "Unstated error: the top force is that of an earlier plate position, this far back along its path "
-        "[m]",
-        at_least_zero());
-    add("--guide-friction", instrument.guide_friction, "FRACTION",
-        "Unstated error: friction of the plate's guide, which the load cell also reads, over the maximum top "
-        "force",
-        CLI::Range(0.0, 0.5));
-    add("--force-saturation", instrument.force_saturation, "PER_N",
-        "Unstated error: a contact force f is read as f/(1 + a f), with this a [1/N]", at_least_zero());
+    const auto effect = [](const char* name) { return find_effect(name)->formula; };
+    const CLI::Range one(-1.0, 1.0), half(-0.5, 0.5);
+    add("--force-bias", instrument.force_bias, "FRACTION", half, effect("force_bias"));
+    add("--threshold-shift", instrument.threshold_shift, "N", one,
+        "the true force threshold is higher by this [N]");
+    add("--position-bias", instrument.position_bias, "FRACTION", CLI::Range(-0.05, 0.05),
+        effect("position_bias"));
+    add("--strain-offset", instrument.strain_offset, "M", one,
+        "plate positions are measured too high by this [m]");
+    add("--gauge-drift", instrument.gauge_drift, "FRACTION", half, effect("gauge_drift"));
+    add("--zero-drift", instrument.zero_drift, "FRACTION", half, effect("zero_drift"));
+    add("--gauge-hysteresis", instrument.gauge_hysteresis, "FRACTION", half, effect("gauge_hysteresis"));
+    add("--force-lag", instrument.force_lag, "M", at_least_zero(), effect("force_lag"));
+    add("--guide-friction", instrument.guide_friction, "FRACTION", CLI::Range(0.0, 0.5),
+        effect("guide_friction"));
+    add("--force-saturation", instrument.force_saturation, "PER_N", at_least_zero(),
+        effect("force_saturation"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/python_program.h"
 #include "cli/shell/subprocess.h"
+#include "core/errors.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -14,9 +15,10 @@ struct DistributeCommand {
 };
 
 int run(const DistributeCommand& command) {
+    if (command.words.empty())
+        throw InputError("a command is needed: run, challenge run or diagnose, with its options");
     ::setenv("MCDEM_PROGRAM", this_program().c_str(), 1);
-    std::vector<std::string> words{"--tries", std::to_string(command.tries)};
-    if (!command.scheduler.empty()) words.insert(words.end(), {"--scheduler", command.scheduler});
+    std::vector<std::string> words{std::to_string(command.tries), command.scheduler};
     words.insert(words.end(), command.words.begin(), command.words.end());
     return run_python_module("mcdem.distributed", words);
 }

@@ -7,7 +7,6 @@
 #include <csignal>
 #include <deque>
 #include <list>
-#include <map>
 #include <thread>
 
 #include "cli/parts/ranks.h"
@@ -90,13 +89,10 @@ int compute_here(const SharedWork& work, PartedWork& parts, const std::string& d
     return failed(work, error);
 }
 
-std::vector<std::string> part_words(const SharingOptions& options) {
-    std::vector<std::string> words = words_of(options);
+std::vector<std::string> program_and(std::vector<std::string> words) {
     words.insert(words.begin(), this_program().string());
     return words;
 }
-
-constexpr int max_kills = 3;  ///< per part
 
 struct Running {
     std::size_t part;
@@ -105,9 +101,8 @@ struct Running {
 };
 
 /// Distributes parts to the devices of this machine, one process per device: runs `words --part K --device D`
-/// for every part. A device whose process fails is removed from `devices`, and another one gets the part.
-/// After a signal the part is tried again on any device; it is given up when its processes were killed three
-/// times. The caller has an Interrupt.
+/// for every part. A device whose process fails is removed from `devices`, and another one gets the part. A
+/// part whose process was ended by a signal remains missing. The caller has an Interrupt.
 class Dealing {
 public:
     Dealing(const std::vector<std::string>& words, const std::vector<std::size_t>& parts,
@@ -166,12 +161,11 @@ private:
             spdlog::warn("part {}: its process on device {} was ended by signal {}", one.part, one.device,
                          end.signal);
             free_.push_back(one.device);
-            if (++kills_[one.part] >= max_kills) return;
-        } else {
-            spdlog::warn("part {}: has failed on device {}, which is left out from here on", one.part,
-                         one.device);
-            std::erase(devices_, one.device);
+            return;
         }
+        spdlog::warn("part {}: has failed on device {}, which is left out from here on", one.part,
+                     one.device);
+        std::erase(devices_, one.device);
         parts_.push_back(one.part);
     }
 
@@ -181,7 +175,6 @@ private:
     std::vector<int>& devices_;
     std::vector<int> free_;
     std::list<Running> running_;
-    std::map<std::size_t, int> kills_;
     Progress progress_{stderr, progress_style(stderr)};
     int code_ = exit_done;
 };
@@ -194,7 +187,7 @@ int compute_on_all_devices(const SharedWork& work, PartedWork& parts, const Shar
                          info.name, devices.front());
     if (devices.size() == 1) return compute_here(work, parts, std::to_string(devices.front()));
     spdlog::info("{} devices, a process on each", devices.size());
-    const std::vector<std::string> words = part_words(options);
+    const std::vector<std::string> words = program_and(words_of(options));
     std::vector<int> left_devices = devices;
     return until_merged(work, parts, [&](const Numbers& left) {
         const int code = Dealing(words, left, left_devices).all();
@@ -235,36 +228,20 @@ int compute_as_rank(const SharedWork& work, const std::string& device) {
     }
 }
 
-/// "3, 5-7"
-std::string ranges_text(const Numbers& numbers) {
-    std::vector<std::string> ranges;
-    for (std::size_t k = 0, last = 0; k < numbers.size(); k = last + 1) {
-        for (last = k; last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1;) ++last;
-        ranges.push_back(last == k ? std::to_string(numbers[k])
-                                   : fmt::format("{}-{}", numbers[k], numbers[last]));
-    }
-    return fmt::format("{}", fmt::join(ranges, ", "));
-}
-
 int merge_only(const SharedWork& work, PartedWork& parts) {
     const Numbers left = left_to_compute(parts);
     if (left.empty()) return all_is_merged;
     spdlog::error("{}: {} part{} missing: {}; the command without --merge computes what is missing",
-                  work.out.string(), left.size(), left.size() == 1 ? " is" : "s are", ranges_text(left));
+                  work.out.string(), left.size(), left.size() == 1 ? " is" : "s are", fmt::join(left, ", "));
     return exit_failed;
 }
 
 int compute_by_slurm(const SharedWork& work, PartedWork& parts, const SharingOptions& options,
                      const std::string& device) {
-    SlurmJob job;
-    job.folder = work.out / "slurm";
-    job.words = part_words(options);
+    SlurmJob job{work.out / "slurm", program_and(words_of(options)), program_and(words_of(options, true)),
+                 options};
     if (!device.empty() && device != all_devices) job.words.insert(job.words.end(), {"--device", device});
-    job.tasks = options.slurm_tasks;
-    job.partition = options.slurm_partition;
-    job.time = options.slurm_time;
-    job.lines_file = options.slurm_lines;
-    const bool is_next = is_next_job(job);
+    job.next.push_back("--no-wait");
     for (Numbers left; !(left = left_to_compute(parts)).empty();) {
         const std::string number = submit(job, left);
         if (options.no_wait) {
@@ -291,7 +268,7 @@ int compute_by_slurm(const SharedWork& work, PartedWork& parts, const SharingOpt
             number, (job.folder / "*.log").string());
         return exit_failed;
     }
-    return is_next ? exit_done : all_is_merged;
+    return is_next_job() ? exit_done : all_is_merged;
 }
 
 /// Computes what is missing and merges, or what the options choose of it. Signals interrupt all of it.
@@ -361,13 +338,14 @@ void add_sharing_options(CLI::App& command, SharingOptions& options, std::string
         option->needs(slurm)->group(group);
 }
 
-std::vector<std::string> words_of(const SharingOptions& options) {
+std::vector<std::string> words_of(const SharingOptions& options, bool all) {
     std::vector<std::string> words;
     for (const CLI::App* app = options.command; app->get_parent(); app = app->get_parent())
         words.insert(words.begin(), app->get_name());
     for (const CLI::Option* option : options.command->get_options()) {
         const std::string name = option->get_name();
-        if (option->get_group() == group || name == "--device" || name == "--resume") continue;
+        const bool is_how = option->get_group() == group || name == "--device";
+        if (name == "--resume" || (is_how && !all)) continue;
         for (const std::string& value : option->results()) {
             if (!option->get_positional()) words.push_back(name);
             if (option->get_items_expected_max() > 0) words.push_back(value);

@@ -28,8 +28,9 @@ void add_part_options(CLI::App& command, SharingOptions& options, std::string& d
 /// The same, plus the options of MPI and Slurm.
 void add_sharing_options(CLI::App& command, SharingOptions& options, std::string& device);
 
-/// The words of the command line ("run", scene, ..) without options that determine where and how it runs.
-std::vector<std::string> words_of(const SharingOptions& options);
+/// The words of the command line ("run", scene, ..) without `--resume`, and, unless `all`, without options
+/// that determine where and how it runs.
+std::vector<std::string> words_of(const SharingOptions& options, bool all = false);
 
 /// Whether the command line requests work in parts.
 bool is_shared(const SharingOptions& options, const std::string& device);

@@ -6,17 +6,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <fstream>
+#include <optional>
+#include <sstream>
 #include <thread>
 
 #include "cli/shell/messages.h"
 #include "cli/shell/subprocess.h"
-#include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/replaced.h"
+#include "core/sha256.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -31,13 +32,17 @@ constexpr auto settle = std::chrono::seconds(10);      ///< time until files of 
 /// Maximum size of an array: Slurm's default of MaxArraySize.
 constexpr std::size_t max_tasks = 1000;
 
-fs::path jobs_file(const SlurmJob& job) { return job.folder / "jobs"; }
+/// Set in the dependent job: number of the array, and its parts.
+std::string array_before() {
+    const char* const value = std::getenv("MCDEM_SLURM_BEFORE");
+    return value ? value : "";
+}
 
-/// The last submitted jobs.
-struct Jobs {
-    std::string array, next;  ///< job numbers; empty: not submitted
-    std::string parts;
-};
+/// All jobs of a folder have the same name. On a node of the cluster the folder may have another path.
+std::string name_of(const SlurmJob& job) {
+    if (is_next_job()) return std::getenv("SLURM_JOB_NAME");
+    return "mcdem-" + Sha256().add(fs::weakly_canonical(job.folder).string()).hex().substr(0, 12);
+}
 
 /// Escapes % in the pattern of a log's name.
 std::string log_pattern(const SlurmJob& job, const std::string& name) {
@@ -55,125 +60,102 @@ ProgramEnd slurm(const std::vector<std::string>& words) {
     return *end;
 }
 
-bool is_number(const std::string& text) {
-    return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-}
-
-Jobs submitted_last(const SlurmJob& job) {
-    Jobs jobs;
-    std::ifstream in(jobs_file(job));
-    if (!std::getline(in, jobs.array) || !std::getline(in, jobs.next) || !std::getline(in, jobs.parts) ||
-        !is_number(jobs.array) || !is_number(jobs.next))
-        return {};
-    return jobs;
-}
-
-/// Whether any task of the jobs is pending or running. True if Slurm does not answer.
-bool are_in_queue(const Jobs& jobs) {
-    const auto end = slurm({"squeue", "--me", "--noheader", "--array", "--format=%F"});
-    if (end.exit_code != 0) return true;
-    const std::string all = "\n" + end.out;
-    return all.find("\n" + jobs.array + "\n") != all.npos || all.find("\n" + jobs.next + "\n") != all.npos;
-}
-
-bool was_cancelled(const Jobs& jobs) {
+/// Number of the oldest pending or running job of the folder, other than this process; empty: there is none.
+/// Nothing if Slurm does not answer.
+std::optional<std::string> queued(const SlurmJob& job) {
     const auto end =
-        slurm({"squeue", "--jobs=" + jobs.array, "--noheader", "--states=CANCELLED", "--format=%F"});
-    return end.exit_code == 0 && !end.out.empty();
+        slurm({"squeue", "--me", "--noheader", "--sort=i", "--name=" + name_of(job), "--format=%F"});
+    if (end.exit_code != 0) return std::nullopt;
+    std::istringstream lines(end.out);
+    std::string number;
+    while (std::getline(lines, number))
+        if (!is_next_job() || number != std::getenv("SLURM_JOB_ID")) return number;
+    return "";
 }
 
-/// `words`, with the command-line options of the job.
-std::vector<std::string> next_words(const SlurmJob& job) {
-    std::vector<std::string> words = job.words;
-    words.insert(words.end(), {"--slurm", "--no-wait", "--slurm-tasks", std::to_string(job.tasks)});
-    for (const auto& [option, value] : {std::pair{"--slurm-partition", job.partition},
-                                        {"--slurm-time", job.time},
-                                        {"--slurm-lines", job.lines_file}})
-        if (!value.empty()) words.insert(words.end(), {option, value});
-    return words;
+bool was_cancelled(const std::string& array) {
+    const auto end = slurm({"squeue", "--jobs=" + array, "--noheader", "--states=CANCELLED", "--format=%F"});
+    return end.exit_code == 0 && !end.out.empty();
 }
 
 /// Returns the job number.
 std::string submit_script(const SlurmJob& job, const std::vector<std::string>& options,
-                          const std::string& argument) {
-    std::vector<std::string> words{"sbatch", "--parsable", "--requeue", "--job-name=mcdem"};
-    if (!job.partition.empty()) words.push_back("--partition=" + job.partition);
-    if (!job.time.empty()) words.push_back("--time=" + job.time);
+                          const std::vector<std::string>& arguments) {
+    std::vector<std::string> words{"sbatch", "--parsable", "--requeue", "--job-name=" + name_of(job)};
+    const SharingOptions& of = job.options;
+    if (!of.slurm_partition.empty()) words.push_back("--partition=" + of.slurm_partition);
+    if (!of.slurm_time.empty()) words.push_back("--time=" + of.slurm_time);
     words.insert(words.end(), options.begin(), options.end());
-    words.insert(words.end(), {(job.folder / "job.sh").string(), argument});
+    words.push_back((job.folder / "job.sh").string());
+    words.insert(words.end(), arguments.begin(), arguments.end());
     const auto end = slurm(words);
-    const std::string number = end.out.substr(0, end.out.find_first_of(";\n"));
-    if (end.exit_code != 0 || !is_number(number))
+    if (end.exit_code != 0)
         throw InputError(
             fmt::format("--slurm: sbatch has refused the job (exit code {}): see what it says above, and {}",
                         end.exit_code, (job.folder / "job.sh").string()));
-    return number;
+    return end.out.substr(0, end.out.find_first_of(";\n"));
 }
 
 }  // namespace
 
 std::string job_script(const SlurmJob& job, const std::vector<std::size_t>& parts) {
-    std::string lines = job.lines_file.empty() ? "" : read_file(job.lines_file);
-    if (!lines.empty() && lines.back() != '\n') lines += '\n';
+    const std::string& file = job.options.slurm_lines;
     return fmt::format(
         "#!/bin/bash\n"
         "# Written by mcdem anew for every job: lines of your own come from the file of --slurm-lines.\n"
-        "{}"
+        "{}\n"
         "parts=({})\n"
         "if [[ $1 == part ]]; then\n"
         "    exec {} --part \"${{parts[SLURM_ARRAY_TASK_ID]}}\"\n"
         "fi\n"
+        "export MCDEM_SLURM_BEFORE=\"$2 ${{parts[*]}}\"\n"
         "exec {}\n",
-        lines, fmt::join(parts, " "), shell_words(job.words), shell_words(next_words(job)));
+        file.empty() ? "" : read_file(file), fmt::join(parts, " "), shell_words(job.words),
+        shell_words(job.next));
 }
 
-bool is_next_job(const SlurmJob& job) {
-    const char* const me = std::getenv("SLURM_JOB_ID");
-    return me && submitted_last(job).next == me;
-}
+bool is_next_job() { return !array_before().empty(); }
 
 std::string submit(const SlurmJob& job, const std::vector<std::size_t>& all_parts) {
     const std::vector<std::size_t> parts(
         all_parts.begin(),
         all_parts.begin() + static_cast<std::ptrdiff_t>(std::min(max_tasks, all_parts.size())));
-    const std::string list = fmt::format("{}", fmt::join(parts, " "));
-    const Jobs before = submitted_last(job);
-    if (is_next_job(job)) {
-        if (was_cancelled(before))
-            throw RunError(fmt::format("job {} was cancelled: nothing is submitted again", before.array));
-        if (before.parts == list)
-            throw RunError(fmt::format("job {} has finished no part: see {}", before.array,
-                                       (job.folder / (before.array + "_*.log")).string()));
-    } else if (!before.array.empty() && are_in_queue(before)) {
-        spdlog::info("job {} of this work is still there", before.array);
-        return before.array;
+    const fs::path script = job.folder / "job.sh";
+    expect_replaceable(script, FileKind::job_script);
+    if (const auto there = fs::exists(script) ? queued(job) : ""; there && !there->empty()) {
+        spdlog::info("job {} of this work is still there", *there);
+        return *there;
+    }
+    if (is_next_job()) {
+        const std::string before = array_before(), last = before.substr(0, before.find(' '));
+        if (was_cancelled(last))
+            throw RunError(fmt::format("job {} was cancelled: nothing is submitted again", last));
+        if (before == fmt::format("{} {}", last, fmt::join(parts, " ")))
+            throw RunError(fmt::format("job {} has finished no part: see {}", last,
+                                       (job.folder / (last + "_*.log")).string()));
     }
     make_folder(job.folder);
-    replace_own(job.folder / "job.sh", FileKind::job_script, job_script(job, parts));
-    Jobs jobs;
-    jobs.array = submit_script(job,
-                               {fmt::format("--array=0-{}%{}", parts.size() - 1, job.tasks),
-                                "--output=" + log_pattern(job, "%A_%a.log")},
-                               "part");
-    jobs.next = submit_script(
-        job, {"--dependency=afterany:" + jobs.array, "--output=" + log_pattern(job, "%j.log")}, "next");
-    replace_file(jobs_file(job), fmt::format("{}\n{}\n{}\n", jobs.array, jobs.next, list));
-    spdlog::info("job {}: {} part{}, {} at a time; job {} follows it", jobs.array, parts.size(),
-                 parts.size() == 1 ? "" : "s", job.tasks, jobs.next);
-    return jobs.array;
+    replace_own(script, FileKind::job_script, job_script(job, parts));
+    const std::string array =
+        submit_script(job,
+                      {fmt::format("--array=0-{}%{}", parts.size() - 1, job.options.slurm_tasks),
+                       "--output=" + log_pattern(job, "%A_%a.log")},
+                      {"part"});
+    const std::string next = submit_script(
+        job, {"--dependency=afterany:" + array, "--output=" + log_pattern(job, "%j.log")}, {"next", array});
+    spdlog::info("job {}: {} part{}, {} at a time; job {} follows it", array, parts.size(),
+                 parts.size() == 1 ? "" : "s", job.options.slurm_tasks, next);
+    return array;
 }
 
 void wait_for_jobs(const SlurmJob& job, const std::function<bool()>& is_done) {
-    auto last_asked = Clock::now();
-    auto gone = Clock::time_point::max();  // since then it is not in the queue
-    while (!is_done()) {
-        const auto now = Clock::now();
-        if (now - last_asked > ask) {
-            last_asked = now;
-            gone = are_in_queue(submitted_last(job)) ? Clock::time_point::max() : std::min(gone, now);
-        }
-        if (gone < now - settle) return;
-        std::this_thread::sleep_for(look);
+    for (auto asked = Clock::now(); !is_done(); std::this_thread::sleep_for(look)) {
+        if (Clock::now() - asked < ask) continue;
+        asked = Clock::now();
+        if (queued(job) != "") continue;
+        std::this_thread::sleep_for(settle);
+        is_done();
+        return;
     }
 }
 

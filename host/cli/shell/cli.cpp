@@ -8,7 +8,6 @@
 #include <new>
 
 #include "cl/kernel_cache.h"
-#include "cl/process_limits.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/standard_streams.h"
@@ -128,7 +127,6 @@ int run_cli(int argc, const char* const* argv) {
         return exit_failed;
     }
     try {
-        expect_enough_stack();
         hint_at_crashes();
         opencl_started = hint_at_crashes;
         read_run_packing = packing_of_run;

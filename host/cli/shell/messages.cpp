@@ -41,7 +41,8 @@ const char* remedy_of(cl_int code) {
             return "the device has not enough memory (run fewer replicas at a time), or it has failed "
                    "(`mcdem devices` lists those that answer)";
         default:
-            return "the device or its driver has failed; `mcdem devices` lists those that answer";
+            return "the device or its driver has failed (`mcdem devices` lists those that answer), or its "
+                   "compiled kernels are damaged (remove the folder POCL_CACHE_DIR, or ~/.cache/pocl/kcache)";
     }
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int not_started = 127;                     ///< exit code if exec fails
+constexpr int not_started = 126, not_found = 127;    ///< exit codes of env
 constexpr auto look = std::chrono::milliseconds(5);  ///< interval between checks whether it has ended
 
 std::string variable(const char* name) {
@@ -52,14 +52,6 @@ fs::path package_folder() {
                     looked));
 }
 
-/// Search path with only the package's folder and the user's settings, so that modules in the current folder
-/// are not used.
-std::vector<std::string> environment() {
-    const std::string others = variable("PYTHONPATH");
-    return {"PYTHONPATH=" + package_folder().string() + (others.empty() ? "" : ":" + others),
-            "PYTHONSAFEPATH=1", "PYTHONDONTWRITEBYTECODE=1"};
-}
-
 ProgramEnd end_of(Subprocess python) {
     const Interrupt interrupt;
     for (bool told = false;;) {
@@ -75,16 +67,27 @@ ProgramEnd end_of(Subprocess python) {
 }  // namespace
 
 int run_python_module(const std::string& module, const std::vector<std::string>& arguments) {
-    std::vector<std::string> words{interpreter(), "-m", "mcdem.program", module};
+    const std::string python = interpreter(), others = variable("PYTHONPATH");
+    // A search path with only the package's folder and the user's settings, so that modules in the current
+    // folder are not used.
+    std::vector<std::string> words{
+        "/usr/bin/env",
+        "PYTHONPATH=" + package_folder().string() + (others.empty() ? "" : ":" + others),
+        "PYTHONSAFEPATH=1",
+        "PYTHONDONTWRITEBYTECODE=1",
+        python,
+        "-m",
+        "mcdem.program",
+        module};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::fflush(stdout);  // otherwise its output would come first
-    const ProgramEnd end = end_of(Subprocess(words, environment()));
-    if (end.exit_code == not_started)
+    const ProgramEnd end = end_of(Subprocess(words));
+    if (end.exit_code == not_started || end.exit_code == not_found)
         throw RunError(fmt::format(
-            "{}: cannot be started: install python3, or name a Python 3 by MCDEM_PYTHON", words.front()));
+            "{}: cannot be started: install python3, or name a Python 3 by MCDEM_PYTHON", python));
     if (end.exit_code >= 0) return end.exit_code;
     if (end.signal == SIGINT || end.signal == SIGTERM) return exit_interrupted;
-    throw RunError(fmt::format("{} -m {}: was ended by signal {}", words.front(), module, end.signal));
+    throw RunError(fmt::format("{} -m {}: was ended by signal {}", python, module, end.signal));
 }
 
 }  // namespace mcdem::cli

@@ -5,11 +5,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <string_view>
 #include <utility>
 
 #include "core/errors.h"
@@ -20,39 +18,18 @@ namespace {
 
 constexpr int not_found = 127;
 
-std::vector<char*> pointers(std::vector<std::string>& words) {
-    std::vector<char*> all;
-    for (auto& word : words) all.push_back(word.data());
-    all.push_back(nullptr);
-    return all;
-}
-
-/// This program's environment, with these settings added or replaced.
-std::vector<std::string> environment_with(const std::vector<std::string>& settings) {
-    std::vector<std::string> all = settings;
-    for (char** own = environ; *own; ++own) {
-        const std::string_view setting = *own;
-        const auto name = setting.substr(0, setting.find('=') + 1);
-        if (std::ranges::none_of(settings, [&](const auto& other) { return other.starts_with(name); }))
-            all.emplace_back(setting);
-    }
-    return all;
-}
-
 /// `out`: descriptor for its standard output, or -1.
-pid_t start(std::vector<std::string>& words, int out, const std::vector<std::string>& settings = {}) {
-    const auto arguments = pointers(words);
-    auto environment = environment_with(settings);
-    const auto variables = pointers(environment);
+pid_t start(std::vector<std::string>& words, int out) {
+    std::vector<char*> arguments;
+    for (auto& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
     const pid_t parent = ::getpid();
     const pid_t process = ::fork();
     if (process < 0) throw RunError(words.front() + ": cannot be started: " + std::strerror(errno));
     if (process == 0) {  // only async-signal-safe functions between fork and exec
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent) ::_exit(not_found);
-        if (out < 0 || ::dup2(out, STDOUT_FILENO) >= 0) {
-            ::execvpe(arguments[0], arguments.data(), variables.data());
-        }
+        if (out < 0 || ::dup2(out, STDOUT_FILENO) >= 0) ::execvp(arguments[0], arguments.data());
         ::_exit(not_found);
     }
     return process;
@@ -67,8 +44,7 @@ ProgramEnd end_of(int status) {
 
 }  // namespace
 
-Subprocess::Subprocess(std::vector<std::string> words, const std::vector<std::string>& environment)
-    : process_(start(words, -1, environment)) {}
+Subprocess::Subprocess(std::vector<std::string> words) : process_(start(words, -1)) {}
 
 Subprocess::Subprocess(Subprocess&& other) noexcept
     : process_(std::exchange(other.process_, -1)), end_(std::move(other.end_)) {}

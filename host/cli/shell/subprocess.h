@@ -18,9 +18,9 @@ struct ProgramEnd {
 /// A child process; it gets SIGTERM when this program dies.
 class Subprocess {
 public:
-    /// The process inherits the output streams and the environment plus `environment`: "NAME=value". Exit
-    /// code 127 if the program does not exist. Throws RunError if it cannot be started.
-    explicit Subprocess(std::vector<std::string> words, const std::vector<std::string>& environment = {});
+    /// The process inherits the output streams and the environment. Exit code 127 if the program does not
+    /// exist. Throws RunError if it cannot be started.
+    explicit Subprocess(std::vector<std::string> words);
     ~Subprocess();
     Subprocess(Subprocess&& other) noexcept;
     Subprocess(const Subprocess&) = delete;

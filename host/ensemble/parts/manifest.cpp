@@ -57,10 +57,8 @@ Manifest keep_manifest(const std::filesystem::path& file, const Manifest& wanted
     const std::string text = nlohmann::json(wanted).dump(1) + "\n";
     if (create_file(file, text)) return wanted;
     const auto kept = read_manifest(file);
-    if (!kept) {
-        replace_file(file, text);
-        return wanted;
-    }
+    if (!kept)
+        throw InputError(file.string() + ": is damaged: restore it from a copy, or give another folder");
     std::vector<std::string> problems;
     for (const auto& [name, mine] : wanted) {
         const auto found = kept->find(name);

@@ -28,8 +28,8 @@ std::filesystem::path device_file(const std::filesystem::path& folder);
 /// None if the file does not exist or is damaged.
 std::optional<Manifest> read_manifest(const std::filesystem::path& file);
 
-/// Writes `wanted` if there is no manifest or a damaged one. Returns the content of the file. Throws
-/// InputError with all entries that differ; the entry `chosen` may differ.
+/// Writes `wanted` if there is no manifest. Returns the content of the file. Throws InputError if it is
+/// damaged, or with all entries that differ; the entry `chosen` may differ.
 Manifest keep_manifest(const std::filesystem::path& file, const Manifest& wanted,
                        const std::string& chosen = "");
 

@@ -111,36 +111,8 @@ std::size_t RunParts::begin(const RunCut& cut) {
     make_folder(folder);
     Manifest wanted = manifest_of(scene_, options_.program);
     wanted["number of replicas"] = std::to_string(scene_.replicas.size());
-    std::size_t size = fitting_size(scene_, cut);
-    if (fs::exists(file) && !read_manifest(file)) {
-        size = size_of_finished_parts(size);
-        options_.on_warning(
-            fmt::format("{}: is damaged, and rebuilt from the finished parts", file.string()));
-    }
-    wanted[size_of_part] = std::to_string(size);
+    wanted[size_of_part] = std::to_string(fitting_size(scene_, cut));
     return size_in(keep_manifest(file, wanted, size_of_part), file);
-}
-
-/// If the manifest is damaged, the size follows from the finished parts. Throws InputError if they belong to
-/// another run.
-std::size_t RunParts::size_of_finished_parts(std::size_t fitting) const {
-    std::size_t size = 0;
-    for (const auto& entry : fs::directory_iterator(parts_folder(options_.folder))) {
-        if (entry.path().extension() != ".h5") continue;
-        Run part;
-        try {
-            part = read_run_header({entry.path()});
-        } catch (const InputError&) {
-            continue;  // detected during the merge
-        }
-        if (part.scene != scene_.text || part.program != options_.program)
-            throw InputError(
-                fmt::format("{}: is damaged, and the finished parts beside it are of another scene or "
-                            "program: give that one, or another folder",
-                            manifest_file(parts_folder(options_.folder)).string()));
-        size = std::max(size, part.recordings.size());  // the last part may be smaller
-    }
-    return size > 0 ? size : fitting;
 }
 
 std::vector<std::size_t> RunParts::missing() {

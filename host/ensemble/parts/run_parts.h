@@ -29,7 +29,6 @@ public:
 
 private:
     std::size_t begin(const RunCut& cut);
-    std::size_t size_of_finished_parts(std::size_t fitting) const;
     Scene scene_of(std::size_t part) const;
     void expect_own(std::size_t part) const;
     bool is_whole(std::size_t part) const;

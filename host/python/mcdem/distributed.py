@@ -7,7 +7,6 @@ mcdem.distributed.compute(["challenge", "run", ...])                           #
 Each task is a process `mcdem .. --part K`. All machines need the program and the folders under the same paths. If a worker is
 lost, another one computes its part again: parts are bit-identical wherever they are computed.
 """
-import argparse
 import contextlib
 import json
 import os
@@ -136,19 +135,11 @@ def client_of(scheduler):
 
 
 def main():
-    parser = argparse.ArgumentParser(
-        prog="mcdem distribute", description="Parts of a command's work as tasks of Dask: by default on all devices of "
-        "this machine, with --scheduler on a cluster that runs already.")
-    parser.add_argument("--scheduler", metavar="ADDRESS|FILE", help="of a running Dask scheduler: tcp://.., or its file")
-    parser.add_argument("--tries", type=int, default=TRIES, metavar="N", help="of a part that fails (default: %(default)s)")
-    parser.add_argument("words", nargs=argparse.REMAINDER, metavar="COMMAND ..",
-                        help="the command line: run, challenge run or diagnose, with their options")
-    options = parser.parse_args()
-    if not options.words:
-        parser.error("a command is needed: run, challenge run or diagnose")
+    """What `mcdem distribute` starts (host/cli/parts/distribute.cpp): TRIES SCHEDULER WORD.., the second may be empty."""
+    tries, scheduler, *words = sys.argv[1:]
     with contextlib.ExitStack() as stack:
-        client = stack.enter_context(client_of(options.scheduler)) if options.scheduler else None
-        compute(options.words, client=client, tries=options.tries)
+        client = stack.enter_context(client_of(scheduler)) if scheduler else None
+        compute(words, client=client, tries=int(tries))
 
 
 if __name__ == "__main__":
