@@ -7,7 +7,6 @@
 
 #include "core/stress.h"
 #include "python/bindings.h"
-#include "python/toml_text.h"
 
 namespace mcdem::inline python {
 namespace {
