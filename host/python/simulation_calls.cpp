@@ -105,8 +105,6 @@ ReadWhat what_of(const std::string& word) {
 
 SharedRun read(const std::filesystem::path& path, const std::string& what) {
     const py::gil_scoped_release others_go_on;
-    if (!std::filesystem::exists(path))
-        throw InputError(path.string() + ": must be a result folder or file, got nothing there");
     return std::make_shared<Run>(read_run(path, what_of(what)));
 }
 
