@@ -31,8 +31,7 @@ py::list devices() {
 }
 
 std::string failure_text(const std::string& label, const Failure& failure) {
-    return fmt::format("replica {} stopped at step {}{}: {}", label.empty() ? "1" : label, failure.step,
-                       failure.grain < 0 ? "" : fmt::format(", grain {}", failure.grain), failure.cause);
+    return fmt::format("replica {} stopped at {}", label.empty() ? "1" : label, failure.text());
 }
 
 /// As in the program: a replica that stops is a warning; if all stop, it is an error.
