@@ -178,8 +178,8 @@ private:
 
     void write(const ChallengeCase& c, const Recording& recording) const {
         if (recording.failure)
-            throw RunError(fmt::format("{}: its simulation failed at step {}: {}", c.folder,
-                                       recording.failure->step, recording.failure->cause));
+            throw RunError(
+                fmt::format("{}: its simulation failed at {}", c.folder, recording.failure->text()));
         remove_temporaries(options_.folder / c.folder);
         write_experiment(options_.folder / c.folder, realities_.experiment(c, recording), Packed::gzip);
     }

@@ -1,6 +1,8 @@
 // Results of a run or an experiment as plain values, shared by simulator, files, metrics and figures.
 // Measured and simulated data have the same form.
 #pragma once
+#include <fmt/format.h>
+
 #include <array>
 #include <limits>
 #include <map>
@@ -74,6 +76,11 @@ struct Failure {
     long step = 0;
     int grain = -1;  ///< the user's grain number; -1 if no grain is the cause
     std::string cause;
+
+    /// "step 200, grain 3: the reason"
+    std::string text() const {
+        return fmt::format("step {}{}: {}", step, grain < 0 ? "" : fmt::format(", grain {}", grain), cause);
+    }
 };
 
 /// Results of one packing: a replica of a run, or an experiment.

@@ -16,7 +16,7 @@ struct DiagnoseOptions {
     std::filesystem::path folder;         ///< its subfolder `simulations` stores observations
     std::vector<std::string> candidates;  ///< empty: all
     int replicates = 32;                  ///< of the baseline, on the experiment's packing
-    int pairs = 8;                        ///< for every effect
+    int pairs = 8;                        ///< for every effect; at most `replicates`
     int confirmations = 8;                ///< real runs of each proposal
     /// If the simulation's own numerics explain the gap, they are refined once by at most this factor, and
     /// the diagnosis is repeated; 1: never. Above 1, pauses of the experiment's plate are also simulated if

@@ -23,8 +23,6 @@ Run run_of(const Experiment& experiment, int discard) {
 
 Run read_reference(const fs::path& path, int discard, ReadWhat what) {
     if (fs::exists(path / "experiment.toml")) return run_of(read_experiment(path), discard);
-    if (!fs::exists(path))
-        throw InputError(path.string() + ": must be a result folder or file, got nothing there");
     return read_run(path, what);
 }
 

@@ -58,8 +58,6 @@ bool has_scans(const std::filesystem::path& run, const ExportChoice& choice) {
 int export_run(const std::filesystem::path& run, const std::filesystem::path& folder,
                const ExportFormats& formats, const ExportChoice& choice) {
     if (!formats.vtk && !formats.xyz) throw InputError("export: choose a format: vtk, xyz or both");
-    if (!std::filesystem::exists(run))
-        throw InputError(run.string() + ": must be a result folder or file, got nothing there");
     result_files(run);  // throws before a folder is created
     const FolderLock lock = open_output_folder(folder);
     const int files = (formats.vtk ? export_vtk(run, folder, choice) : 0) +

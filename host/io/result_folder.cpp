@@ -80,6 +80,8 @@ std::vector<fs::path> segment_files(const fs::path& folder) {
 }
 
 std::vector<fs::path> result_files(const fs::path& file_or_folder) {
+    if (!fs::exists(file_or_folder))
+        throw InputError(file_or_folder.string() + ": must be a result folder or file, got nothing there");
     if (!fs::is_directory(file_or_folder)) return {file_or_folder};
     if (fs::exists(run_file(file_or_folder))) return {run_file(file_or_folder)};
     if (fs::exists(parts_folder(file_or_folder)))

@@ -18,6 +18,7 @@ std::filesystem::path run_file(const std::filesystem::path& folder);
 std::vector<std::filesystem::path> segment_files(const std::filesystem::path& folder);
 
 /// The files that `read_run` reads for `file_or_folder`: the file itself, run.h5, or all segments.
+/// Throws InputError if there is nothing, or no run.
 std::vector<std::filesystem::path> result_files(const std::filesystem::path& file_or_folder);
 
 /// A file of a run in any state in the folder; an empty path if there is none.

@@ -18,11 +18,10 @@ void note_failures(const Setting& setting, Comparison& comparison) {
     for (const auto* recording : setting.replicas)
         if (recording->failure && ++failed == 1) first = &*recording->failure;
     if (!first) return;
-    const auto grain = first->grain < 0 ? "" : fmt::format(", grain {}", first->grain);
     comparison.notes.push_back(
-        fmt::format("{} of {} replicas stopped early (first: step {}{}: {}); their scans until "
+        fmt::format("{} of {} replicas stopped early (first: {}); their scans until "
                     "then count, except in Rtop where they did not get there",
-                    failed, setting.replicas.size(), first->step, grain, first->cause));
+                    failed, setting.replicas.size(), first->text()));
 }
 
 void note_levels(const Levels& simulated, const Levels& reference, const std::vector<LevelMatch>& matches,

@@ -2,7 +2,9 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
+#include <map>
 #include <memory>
+#include <string>
 
 #include "core/recording.h"
 
@@ -13,6 +15,9 @@ void bind_results(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
 void bind_diagnosis(pybind11::module_& module);
 void bind_comparison(pybind11::module_& module);
+
+/// Converts values of scene keys to int, float, bool or str; None for an empty text.
+pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);
 
 /// A run in Python: shared by arrays and recordings, immutable.
 using SharedRun = std::shared_ptr<Run>;

@@ -71,17 +71,12 @@ py::object calibrate(const Scene& scene, const py::object& reference, const std:
         if (watch.stop_wanted()) throw Interrupted();
     };
     options.on_note = [&](const std::string& note) { watch.warn(note); };
-    std::string text;
-    try {
-        const py::gil_scoped_release others_go_on;
+    return json_result(watch, [&] {
         Device device(choice);
         const Setting chosen = chosen_setting(*other, setting, other->name, "setting");
-        text = calibration_json(calibrate_scene(device, scene, chosen.replicas, options), options.model,
+        return calibration_json(calibrate_scene(device, scene, chosen.replicas, options), options.model,
                                 scene, chosen.label, version_text);
-    } catch (const Interrupted&) {
-    }
-    watch.raise();
-    return py::module_::import("json").attr("loads")(text);
+    });
 }
 
 int export_files(const std::filesystem::path& path, const std::filesystem::path& folder, bool vtk, bool xyz,

@@ -3,7 +3,6 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
 #include <variant>
 
 #include "core/errors.h"
@@ -23,54 +22,33 @@ namespace {
 
 namespace py = pybind11;
 
-struct Numbers {
-    int replicas, pairs, confirmations;
-    double refine;
-};
-
-void check(const Numbers& numbers) {
+void check(const DiagnoseOptions& options) {
     std::vector<std::string> problems;
     const auto expect = [&](const char* name, int value, int least) {
         if (value < least)
             problems.push_back(fmt::format("{}: must be {} or more, got {}", name, least, value));
     };
-    expect("replicates", numbers.replicas, 8);
-    expect("pairs", numbers.pairs, 2);
-    expect("confirmations", numbers.confirmations, 0);
-    if (!(numbers.refine >= 1 && numbers.refine <= 64))
-        problems.push_back(fmt::format("refine: must be between 1 and 64, got {}", numbers.refine));
+    expect("replicates", options.replicates, 8);
+    expect("pairs", options.pairs, 2);
+    expect("confirmations", options.confirmations, 0);
+    if (!(options.refine >= 1 && options.refine <= 64))
+        problems.push_back(fmt::format("refine: must be between 1 and 64, got {}", options.refine));
     if (!problems.empty()) throw InputError(problems);
 }
 
 using Path = std::filesystem::path;
 using OneOrSeveral = std::variant<Path, std::vector<Path>>;
 
-/// The text of diagnosis.json, which is written to the folder with the simulations and the page.
-std::string diagnose_into(const Scene& scene, const Path& folder, const DiagnoseOptions& options,
-                          const OneOrSeveral& experiment, const std::string& choice, bool page) {
-    const Path* one = std::get_if<Path>(&experiment);
-    const std::vector<Experiment> measured =
-        read_experiments(one ? std::vector{*one} : std::get<std::vector<Path>>(experiment), "experiment");
-    const FolderLock lock = open_output_folder(folder);
-    Device device(choice);
-    const Diagnosis diagnosis = diagnose_experiment(device, scene, measured, options);
-    const std::string text = diagnosis_json(diagnosis);
-    replace_own(folder / "diagnosis.json", FileKind::diagnosis, text);
-    if (page) write_diagnosis_page(diagnosis, folder / "diagnosis.html");
-    return text;
-}
-
 py::object diagnose(const Scene& scene, const OneOrSeveral& experiment, const Path& folder,
                     const std::vector<std::string>& candidates, int replicates, int pairs, int confirmations,
                     double refine, std::uint64_t seed, std::optional<Path> library, const std::string& choice,
                     bool page, py::object progress) {
-    check({replicates, pairs, confirmations, refine});
     Watch watch(std::move(progress));
     DiagnoseOptions options;
     options.folder = folder;
     options.candidates = candidates;
     options.replicates = replicates;
-    options.pairs = std::min(pairs, replicates);
+    options.pairs = pairs;
     options.confirmations = confirmations;
     options.refine = refine;
     options.seed = seed;
@@ -79,14 +57,19 @@ py::object diagnose(const Scene& scene, const OneOrSeveral& experiment, const Pa
     options.on_progress = [&](const std::string& stage, double part) { watch.show_progress(stage, part); };
     options.on_note = [&](const std::string& note) { watch.warn(note); };
     options.stop_wanted = [&] { return watch.stop_wanted(); };
-    std::string text;
-    try {
-        const py::gil_scoped_release others_go_on;
-        text = diagnose_into(scene, folder, options, experiment, choice, page);
-    } catch (const Interrupted&) {
-    }
-    watch.raise();
-    return py::module_::import("json").attr("loads")(text);
+    check(options);
+    return json_result(watch, [&] {
+        const Path* one = std::get_if<Path>(&experiment);
+        const std::vector<Experiment> measured =
+            read_experiments(one ? std::vector{*one} : std::get<std::vector<Path>>(experiment), "experiment");
+        const FolderLock lock = open_output_folder(folder);
+        Device device(choice);
+        const Diagnosis diagnosis = diagnose_experiment(device, scene, measured, options);
+        const std::string text = diagnosis_json(diagnosis);
+        replace_own(folder / "diagnosis.json", FileKind::diagnosis, text);
+        if (page) write_diagnosis_page(diagnosis, folder / "diagnosis.html");
+        return text;
+    });
 }
 
 py::object converge(const Scene& scene, const std::filesystem::path& folder, int replicas, double force_limit,
@@ -103,17 +86,13 @@ py::object converge(const Scene& scene, const std::filesystem::path& folder, int
     options.program = version_text;
     options.on_progress = [&](const std::string& cause, double part) { watch.show_progress(cause, part); };
     options.stop_wanted = [&] { return watch.stop_wanted(); };
-    std::string text;
-    try {
-        const py::gil_scoped_release others_go_on;
+    return json_result(watch, [&] {
         const FolderLock lock = open_output_folder(folder);
         Device device(choice);
-        text = convergence_json(converge_scene(device, scene, options));
+        const std::string text = convergence_json(converge_scene(device, scene, options));
         replace_own(folder / "convergence.json", FileKind::convergence, text);
-    } catch (const Interrupted&) {
-    }
-    watch.raise();
-    return py::module_::import("json").attr("loads")(text);
+        return text;
+    });
 }
 
 }  // namespace

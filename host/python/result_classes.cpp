@@ -7,7 +7,6 @@
 
 #include "core/stress.h"
 #include "python/bindings.h"
-#include "python/toml_text.h"
 
 namespace mcdem::inline python {
 namespace {
@@ -157,10 +156,7 @@ void bind_failure(py::module_& module) {
         .def_readonly("step", &Failure::step)
         .def_readonly("grain", &Failure::grain, "Grain number; -1 where none is to blame.")
         .def_readonly("cause", &Failure::cause)
-        .def("__repr__", [](const Failure& self) {
-            return fmt::format("<mcdem.Failure at step {}{}: {}>", self.step,
-                               self.grain < 0 ? "" : fmt::format(", grain {}", self.grain), self.cause);
-        });
+        .def("__repr__", [](const Failure& self) { return "<mcdem.Failure at " + self.text() + ">"; });
 }
 
 void bind_scan_arrays(py::class_<OneRecording>& recording) {

@@ -1,8 +1,11 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <charconv>
+
 #include "python/bindings.h"
-#include "python/toml_text.h"
 #include "scene/read_scene.h"
 
 namespace mcdem::inline python {
@@ -10,11 +13,36 @@ namespace {
 
 namespace py = pybind11;
 
+/// "key = value" for each entry of nested or dotted tables.
+std::vector<std::string> assignments(const py::dict& tables) {
+    return py::module_::import("mcdem.toml").attr("assignments")(tables).cast<std::vector<std::string>>();
+}
+
 Scene scene_of(const py::dict& tables, const py::kwargs& more) {
     py::dict all;
-    for (const auto& [key, value] : tables) all[key] = value;
-    for (const auto& [key, value] : more) all[key] = value;
-    return parse_scene(toml_text(all), "scene");
+    all.attr("update")(tables, **more);
+    return parse_scene(fmt::format("{}\n", fmt::join(assignments(all), "\n")), "scene");
+}
+
+template <class Number>
+bool is_all(const std::string& text, Number& number) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc{} && end == text.data() + text.size();
+}
+
+/// Invalid UTF-8, for example in paths, is decoded like os.fsdecode.
+py::str python_text(const std::string& text) {
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+}
+
+py::object typed(const std::string& text) {
+    if (text.empty()) return py::none();
+    if (text == "true" || text == "false") return py::bool_(text == "true");
+    if (std::uint64_t whole = 0; is_all(text, whole)) return py::int_(whole);
+    if (std::int64_t whole = 0; is_all(text, whole)) return py::int_(whole);
+    if (double number = 0; is_all(text, number)) return py::float_(number);
+    return python_text(text);
 }
 
 std::vector<std::string> labels(const Scene& scene) {
@@ -31,6 +59,13 @@ py::list parameters(const Scene& scene) {
 
 }  // namespace
 
+py::dict typed_parameters(const std::map<std::string, std::string>& parameters) {
+    py::dict all;
+    for (const auto& [key, text] : parameters)
+        all[py::str(key)] = key == "packing.file" && !text.empty() ? python_text(text) : typed(text);
+    return all;
+}
+
 void bind_scene(py::module_& module) {
     py::class_<Scene>(
         module, "Scene",
@@ -42,14 +77,14 @@ void bind_scene(py::module_& module) {
         .def_static(
             "read",
             [](const std::filesystem::path& file, const py::dict& set) {
-                return read_scene(file, overrides_of(set));
+                return read_scene(file, assignments(set));
             },
             py::arg("file"), py::kw_only(), py::arg("set") = py::dict(),
             "A scene file (TOML); `set` overrides keys of it.")
         .def_static(
             "parse",
             [](const std::string& text, const py::dict& set) {
-                return parse_scene(text, "scene", overrides_of(set));
+                return parse_scene(text, "scene", assignments(set));
             },
             py::arg("text"), py::kw_only(), py::arg("set") = py::dict(),
             "A scene from TOML text. Packing files are relative to the working folder.")

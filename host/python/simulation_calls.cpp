@@ -31,8 +31,7 @@ py::list devices() {
 }
 
 std::string failure_text(const std::string& label, const Failure& failure) {
-    return fmt::format("replica {} stopped at step {}{}: {}", label.empty() ? "1" : label, failure.step,
-                       failure.grain < 0 ? "" : fmt::format(", grain {}", failure.grain), failure.cause);
+    return fmt::format("replica {} stopped at {}", label.empty() ? "1" : label, failure.text());
 }
 
 /// As in the program: a replica that stops is a warning; if all stop, it is an error.
@@ -105,8 +104,6 @@ ReadWhat what_of(const std::string& word) {
 
 SharedRun read(const std::filesystem::path& path, const std::string& what) {
     const py::gil_scoped_release others_go_on;
-    if (!std::filesystem::exists(path))
-        throw InputError(path.string() + ": must be a result folder or file, got nothing there");
     return std::make_shared<Run>(read_run(path, what_of(what)));
 }
 

@@ -10,6 +10,8 @@
 #include <string>
 #include <thread>
 
+#include "core/errors.h"
+
 namespace mcdem::inline python {
 
 class Watch {
@@ -68,5 +70,19 @@ private:
     std::atomic<bool> stop_{false};
     std::exception_ptr error_;
 };
+
+/// Calls `work` without the GIL; the JSON text that it returns becomes Python objects. Throws what it throws,
+/// or instead of Interrupted the exception that `watch` has stored.
+template <class Work>
+pybind11::object json_result(Watch& watch, Work work) {
+    std::string text;
+    try {
+        const pybind11::gil_scoped_release others_go_on;
+        text = work();
+    } catch (const Interrupted&) {
+    }
+    watch.raise();
+    return pybind11::module_::import("json").attr("loads")(text);
+}
 
 }  // namespace mcdem::python

@@ -79,9 +79,9 @@ class Scenes(Folder):
         for _ in range(100_000):
             deep = {"grains": deep}
         for bad in (holds_itself, {"grains": {"friction": listed}}, deep, {"batch.vary": {"a": [holds_itself]}}):
-            with self.assertRaisesRegex(ValueError, "at most 32 deep"):
+            with self.assertRaisesRegex(ValueError, "nested less deeply"):
                 mcdem.Scene(bad)
-        with self.assertRaisesRegex(ValueError, "at most 32 deep"):
+        with self.assertRaisesRegex(ValueError, "nested less deeply"):
             mcdem.Scene.parse("", set={"grains.friction": listed})
         while deep:  # releases the levels one by one; otherwise Python would recurse too deeply
             deep = deep.popitem()[1]
@@ -89,7 +89,7 @@ class Scenes(Folder):
     def test_files_are_read_and_overridden(self):
         file = self.folder / "soft.toml"
         file.write_text("[grains]\nfriction = 0.1\n")
-        scene = mcdem.Scene.read(file, set={"grains.friction": 0.5, "contact.model": "mc_dem"})
+        scene = mcdem.Scene.read(file, set={"grains": {"friction": 0.5}, "contact.model": "mc_dem"})
         self.assertEqual(scene.parameters[0]["grains.friction"], 0.5)
         self.assertEqual(scene.parameters[0]["contact.model"], "mc_dem")
 
@@ -103,7 +103,7 @@ class Scenes(Folder):
         self.assertTrue(problems[0].startswith(f"{file}:2: grains.friction must be "), problems[0])
         with self.assertRaisesRegex(ValueError, "grains.colour"):
             mcdem.Scene(grains={"colour": 1})
-        with self.assertRaisesRegex(ValueError, "grains.friction must be a number.*None"):
+        with self.assertRaisesRegex(ValueError, "grains.friction must be a finite number.*None"):
             mcdem.Scene(grains={"friction": None})
         with self.assertRaisesRegex(ValueError, "--set grains.friction"):
             mcdem.Scene.parse("", set={"grains.friction": -1})

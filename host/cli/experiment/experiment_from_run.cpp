@@ -51,8 +51,6 @@ std::size_t chosen_replica(const Run& run, const FromRunCommand& command) {
 }
 
 Recording read_replica(const FromRunCommand& command) {
-    if (!fs::exists(command.run))
-        throw InputError(command.run + ": must be a result folder or file, got nothing there");
     RunReader reader(command.run);
     const std::size_t replica = chosen_replica(reader.run(), command);
     Recording recording = reader.run().recordings[replica];

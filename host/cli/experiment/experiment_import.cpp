@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 
 #include "cli/experiment/experiment.h"
 #include "cli/shell/commands.h"
@@ -60,40 +60,32 @@ Experiment known_of(const ImportCommand& command, FileProblems& problems) {
 
 fs::path kept_mapping(const ImportCommand& command) { return fs::path(command.out) / "mapping.toml"; }
 
-/// Lines of a file written by the Python module (host/python/mcdem/importing/__main__.py); empty if it does
-/// not exist.
-std::vector<std::string> lines_of(const fs::path& file) {
-    std::vector<std::string> lines;
-    std::istringstream in(fs::exists(file) ? read_file(file) : "");
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
-}
-
-/// Arguments for the Python module.
-std::vector<std::string> words_of(const ImportCommand& command, const Experiment& known,
-                                  const FileProblems& settings, const fs::path& work) {
-    std::vector<std::string> words{"--work=" + work.string(), "--kept=" + kept_mapping(command).string()};
-    const auto add = [&](const std::string& option, std::optional<double> value) {
-        if (value && std::isfinite(*value)) words.push_back(fmt::format("{}={}", option, *value));
-    };
+/// What host/python/mcdem/importing/__main__.py reads; null: not known.
+nlohmann::json request_of(const ImportCommand& command, const Experiment& known,
+                          const FileProblems& settings) {
     const auto material = [&](const std::string& key) {
         const auto found = known.materials.find(key);
-        return found == known.materials.end() ? std::nullopt : std::optional(found->second);
+        return found == known.materials.end() ? std::nan("") : found->second;
     };
     const Recording& recording = known.recording;
-    add("--box-x", recording.box.size_x);
-    add("--box-y", recording.box.size_y);
-    add("--plate-start", recording.plate_start);
-    add("--youngs-modulus", material("grains.youngs_modulus"));
-    add("--poisson-ratio", material("grains.poisson_ratio"));
-    add("--voxel-size", command.voxel_size);
-    if (command.gzip) words.push_back("--gzip");
-    if (has_programme(recording.parameters)) words.push_back("--programme");
-    if (!command.mapping.empty()) words.push_back("--mapping=" + command.mapping);
-    for (const std::string& problem : settings.lines()) words.push_back("--settings-problem=" + problem);
-    words.push_back("--");
+    return {{"known",
+             {{"box", {recording.box.size_x, recording.box.size_y}},
+              {"plate_start", recording.plate_start},
+              {"youngs_modulus", material("grains.youngs_modulus")},
+              {"poisson_ratio", material("grains.poisson_ratio")},
+              {"voxel_size", command.voxel_size.value_or(std::nan(""))},
+              {"programme", has_programme(recording.parameters)}}},
+            {"gzip", command.gzip},
+            {"settings_problems", settings.lines()}};
+}
+
+/// Reads the tables into the folder `work`. Files are arguments because their names may not be valid UTF-8.
+int read_tables(const ImportCommand& command, const nlohmann::json& request, const fs::path& work) {
+    replace_file(work / "request.json",
+                 request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    std::vector<std::string> words{work.string(), kept_mapping(command).string(), command.mapping};
     words.insert(words.end(), command.tables.begin(), command.tables.end());
-    return words;
+    return run_python_module("mcdem.importing", words);
 }
 
 /// Reports all problems, with the mapping for the user to correct.
@@ -157,18 +149,18 @@ int run_import(const ImportCommand& command) {
     remove_temporaries_of(out);
     const NewFolder beside(out);
     const fs::path& work = beside.path();
-    const int exit_code = run_python_module("mcdem.importing", words_of(command, known, settings, work));
+    const int exit_code = read_tables(command, request_of(command, known, settings), work);
     if (exit_code != exit_done) return exit_code;
-    if (const auto problems = lines_of(work / "problems"); !problems.empty())
-        refuse(command, work, problems, fs::exists(work / "wrong_rows"));
+    const auto result = nlohmann::json::parse(read_file(work / "result.json"));
+    if (result.contains("problems")) refuse(command, work, result["problems"], result["wrong_rows"]);
     if (std::isnan(known.recording.plate_start))
-        known.recording.plate_start = std::stod(read_file(work / "plate_start"));
+        known.recording.plate_start = std::stod(result["plate_start"].get<std::string>());
     replace_file(work / "experiment.toml", settings_text(known));
     try {
         const Experiment read = read_back(work, fs::path(command.out).lexically_normal().string());
         put_in_place(work, out);
         create_file(kept_mapping(command), read_file(work / "mapping.toml"));
-        for (const std::string& note : lines_of(work / "notes")) spdlog::warn("{}", note);
+        for (const std::string note : result["notes"]) spdlog::warn("{}", note);
         print_summary(command.out, read.recording);
     } catch (const InputError& error) {
         if (command.mapping.empty()) refuse(command, work, error.problems(), true);

@@ -35,7 +35,6 @@ struct DiagnoseCommand {
 void fill_in(DiagnoseCommand& command) {
     DiagnoseOptions& options = command.options;
     options.folder = command.out;
-    options.pairs = std::min(options.pairs, options.replicates);
     if (!command.library.empty()) options.library = command.library;
     options.program = version_text;
     options.stop_wanted = Interrupt::wanted;

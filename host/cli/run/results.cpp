@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "cli/shell/commands.h"
-#include "core/errors.h"
 #include "ensemble/reference.h"
 
 namespace mcdem::inline cli {
@@ -31,16 +30,11 @@ std::vector<std::string> names_of(const std::vector<std::string>& paths) {
     return names;
 }
 
-Run read_result(const std::string& path, ReadWhat what) {
-    if (!fs::exists(path)) throw InputError(path + ": must be a result folder or file, got nothing there");
-    return read_run(path, what);
-}
-
 }  // namespace
 
 LoadedRuns load_runs(const std::vector<std::string>& paths, ReadWhat what) {
     LoadedRuns loaded;
-    for (const auto& path : paths) loaded.runs.push_back(read_result(path, what));
+    for (const auto& path : paths) loaded.runs.push_back(read_run(path, what));
     const auto names = names_of(paths);
     for (std::size_t k = 0; k < paths.size(); ++k)
         for (auto setting : group_by_setting(loaded.runs[k])) {

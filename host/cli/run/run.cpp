@@ -42,9 +42,7 @@ std::string resume_command(const RunCommand& command) {
 }
 
 void warn_of_failure(const Replica& replica, const Failure& failure) {
-    spdlog::warn("replica {} stopped at step {}{}: {}", replica.label.empty() ? "1" : replica.label,
-                 failure.step, failure.grain < 0 ? "" : fmt::format(", grain {}", failure.grain),
-                 failure.cause);
+    spdlog::warn("replica {} stopped at {}", replica.label.empty() ? "1" : replica.label, failure.text());
 }
 
 RunSummary run_with_progress(Device& device, const Scene& scene, const RunCommand& command) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/errors.h"
 #include "diagnose/observe/needed_to_diagnose.h"
 #include "ensemble/parts/manifest.h"
@@ -122,7 +124,7 @@ DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& measure
     plan.question = {scene, grid, reference_material(model), model.replica.protocol.discard, options.program};
     plan.choice = choose_candidates(model, options.candidates);
     plan.library.replicates = options.replicates;
-    plan.library.pairs = options.pairs;
+    plan.library.pairs = std::min(options.pairs, options.replicates);
     plan.library.jitter = first.measurement.position_error;
     plan.library.diameter_jitter = first.measurement.diameter_error;
     plan.library.seed = options.seed;

@@ -8,7 +8,6 @@ Each task is a process `mcdem .. --part K`. All machines need the program and th
 lost, another one computes its part again: parts are bit-identical wherever they are computed.
 """
 import contextlib
-import json
 import os
 import shutil
 import subprocess
@@ -17,6 +16,7 @@ from typing import Any, Callable
 
 from .command import ask, problems_of, program_path
 from .errors import INTERRUPTED, InputError, RunError
+from .toml import assignments
 
 TRIES = 3  # per part, not counting lost workers
 
@@ -25,8 +25,8 @@ def run(scene: str | os.PathLike[str], out: str | os.PathLike[str], *, settings:
         part_replicas: int | None = None, figures: bool = False, **how: Any) -> None:
     """Runs the replicas of a scene in parts into the folder `out`. `settings` overrides keys; `how`: see compute."""
     words = ["run", os.fspath(scene), "--out", os.fspath(out)] + ([] if figures else ["--no-figures"])
-    for key, value in (settings or {}).items():
-        words += ["--set", f"{key}={json.dumps(value) if isinstance(value, (bool, list, tuple)) else value}"]
+    for assignment in assignments(settings or {}):
+        words += ["--set", assignment]
     if part_replicas:
         words += ["--part-replicas", str(part_replicas)]
     compute(words, **how)

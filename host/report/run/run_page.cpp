@@ -276,8 +276,7 @@ void add_origin(Page& page, const RunOrigin& origin) {
     std::vector<std::string> failures;
     for (const auto& recording : run.recordings)
         if (recording.failure)
-            failures.push_back(fmt::format("{} stopped at step {}: {}", recording.label,
-                                           recording.failure->step, recording.failure->cause));
+            failures.push_back(recording.label + " stopped at " + recording.failure->text());
     page.list(failures);
     page.folded("The scene, as it was run", run.scene);
 }

@@ -1,7 +1,10 @@
-"""What `mcdem experiment import` starts (host/cli/experiment/experiment_import.cpp): reads and guesses, prints what each table is taken for,
-and leaves the results in the folder --work, from which the program puts them into place: mapping.toml, and either problems or
-plate.csv, grains.csv, contacts.csv, plate_start and notes. Mistakes for which no mapping can be written are bad input."""
-import argparse
+"""What `mcdem experiment import` starts (host/cli/experiment/experiment_import.cpp): reads and guesses, and prints what each table is taken for.
+
+Arguments: the work folder, the file in which the mapping is kept, the given mapping or "", tables. Reads request.json in the
+work folder and writes mapping.toml, result.json and, unless this states problems, plate.csv, grains.csv and contacts.csv.
+Mistakes for which no mapping can be written are bad input.
+"""
+import json
 import os
 import sys
 import textwrap
@@ -16,23 +19,13 @@ from .read_mapping import parse_mapping, text_of_mapping
 LINE = 110
 
 
-def arguments_of(words):
-    parser = argparse.ArgumentParser(prog="mcdem experiment import", allow_abbrev=False)
-    parser.add_argument("--work", required=True)
-    parser.add_argument("--kept", required=True, help="where the mapping is kept")
-    parser.add_argument("--mapping")
-    parser.add_argument("--settings-problem", action="append", default=[])
-    parser.add_argument("--gzip", action="store_true")
-    parser.add_argument("--programme", action="store_true", help="experiment.toml states one")
-    for name in ("--box-x", "--box-y", "--plate-start", "--youngs-modulus", "--poisson-ratio", "--voxel-size"):
-        parser.add_argument(name, type=float, default=argparse.SUPPRESS)
-    parser.add_argument("tables", nargs="*")
-    return parser.parse_args(words)
-
-
-def known_of(arguments):
-    stated = {name: value for name, value in vars(arguments).items() if hasattr(Known, name)}
-    return Known(box=(getattr(arguments, "box_x", 0.0), getattr(arguments, "box_y", 0.0)), **stated)
+class Request:
+    def __init__(self, work, kept, mapping, *tables):
+        self.work, self.kept, self.mapping, self.tables = work, kept, mapping, tables
+        with open(os.path.join(work, "request.json"), encoding="utf-8") as file:
+            stated = json.load(file)
+        self.known = Known(**{name: value for name, value in stated["known"].items() if value is not None})
+        self.gzip, self.settings_problems = stated["gzip"], stated["settings_problems"]
 
 
 def print_beside(head, text):
@@ -54,11 +47,12 @@ def print_mapping(mapping):
     sys.stdout.flush()
 
 
-def write(arguments, name, text):
-    """Writes a file for the program; `text` may be a list of lines."""
-    if isinstance(text, list):
-        text = "".join(line.replace("\n", " ") + "\n" for line in text)
-    write_whole(os.path.join(arguments.work, name), text.encode("utf-8", "surrogateescape"))
+def write_mapping(request, text):
+    write_whole(os.path.join(request.work, "mapping.toml"), text.encode("utf-8", "surrogateescape"))
+
+
+def write_result(request, **result):
+    write_whole(os.path.join(request.work, "result.json"), json.dumps(result, ensure_ascii=False).encode("utf-8", "replace"))
 
 
 def expect_kept(kept, text):
@@ -74,50 +68,47 @@ def expect_kept(kept, text):
         raise InputError(f"{kept}: is another mapping, and is not replaced: give another folder (--out), or remove it")
 
 
-def import_by_mapping(arguments, known):
-    text = text_of_mapping(arguments.mapping)
-    tables = read_import_tables(parse_mapping(text, arguments.mapping), arguments.tables, arguments.mapping)
+def import_by_mapping(request):
+    text = text_of_mapping(request.mapping)
+    tables = read_import_tables(parse_mapping(text, request.mapping), request.tables, request.mapping)
     mapping = mapping_of(tables)
     print_mapping(mapping)
-    if arguments.settings_problem:
-        raise InputError(arguments.settings_problem)
-    text = mapping_text(mapping) if arguments.tables else text
-    expect_kept(arguments.kept, text)
-    write(arguments, "mapping.toml", text)
-    return import_tables(tables, known)
+    if request.settings_problems:
+        raise InputError(request.settings_problems)
+    text = mapping_text(mapping) if request.tables else text
+    expect_kept(request.kept, text)
+    write_mapping(request, text)
+    return import_tables(tables, request.known)
 
 
-def import_by_guess(arguments, known):
+def import_by_guess(request):
     """None if the guess is uncertain."""
-    if not arguments.tables:
+    if not request.tables:
         raise InputError("TABLE: must be at least one file, or --mapping must name them, got neither")
-    if os.path.lexists(arguments.kept):
-        raise InputError(f"{arguments.kept}: is there already: import with --mapping {arguments.kept}, or remove it")
-    tables = guess_tables(arguments.tables, known)
+    if os.path.lexists(request.kept):
+        raise InputError(f"{request.kept}: is there already: import with --mapping {request.kept}, or remove it")
+    tables = guess_tables(request.tables, request.known)
     mapping = mapping_of(tables)
     text = mapping_text(mapping)
-    write(arguments, "mapping.toml", text)
+    write_mapping(request, text)
     print_mapping(mapping)
-    problems = unclear_entries(text, arguments.kept) + arguments.settings_problem
+    problems = unclear_entries(text, request.kept) + request.settings_problems
     rows = wrong_rows(tables) if problems else []
     if not problems:
         try:
-            return import_tables(tables, known)
+            return import_tables(tables, request.known)
         except InputError as error:
             rows = error.problems
-    write(arguments, "problems", problems + rows)
-    if rows:
-        write(arguments, "wrong_rows", "")
+    write_result(request, problems=problems + rows, wrong_rows=bool(rows))
     return None
 
 
 def main():
-    arguments = arguments_of(sys.argv[1:])
-    imported = (import_by_mapping if arguments.mapping else import_by_guess)(arguments, known_of(arguments))
+    request = Request(*sys.argv[1:])
+    imported = (import_by_mapping if request.mapping else import_by_guess)(request)
     if imported is not None:
-        write_tables(imported, arguments.work, arguments.gzip)
-        write(arguments, "plate_start", repr(imported.plate_start))
-        write(arguments, "notes", imported.notes)
+        write_tables(imported, request.work, request.gzip)
+        write_result(request, plate_start=repr(imported.plate_start), notes=imported.notes)  # text: it may be infinite
 
 
 if __name__ == "__main__":

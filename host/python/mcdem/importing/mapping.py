@@ -1,9 +1,9 @@
 """The mapping of table columns: guessed, and written as mapping.toml for the user to correct (read_mapping reads it)."""
-import json
 import re
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from ..toml import toml_value
 from .names import FORCES, LENGTH_WORDS, LENGTHS, VOXEL
 from .problems import to_number
 from .text import Form
@@ -192,11 +192,6 @@ INTRODUCTION = """\
 UNCLEAR_MARK = "  # unclear: "
 
 
-def toml_text(text):
-    """A text, or a list of texts."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
 def _one_line(text):
     return re.sub(r"[\x00-\x1f\x7f]", " ", text)
 
@@ -205,7 +200,7 @@ def _line_text(key, of, meaning):
     words = list(of.words)
     if of.sure == UNCLEAR:
         words[0] = "?" + words[0]
-    text = f"{key} = {toml_text(words[0] if len(words) == 1 else words)}"
+    text = f"{key} = {toml_value(words[0] if len(words) == 1 else words)}"
     if of.sure != "stated":
         text += f"  # {of.sure}: {_one_line(of.why)}"
     if of.sure == UNCLEAR and meaning:
@@ -221,7 +216,7 @@ def _meaning(key):
 def _table_text(table):
     text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_sure, table.role_why),
                                         "one of plate, grains, contacts, unused")
-    text += f"files = {toml_text(table.files)}\n"
+    text += f"files = {toml_value(table.files)}\n"
     if table.form:
         separator = {"\t": "tab", " ": "blanks"}.get(table.form.separator, table.form.separator)
         text += f'separator = "{separator}"\n'
@@ -234,7 +229,7 @@ def _table_text(table):
     if table.walls:
         text += "[table.walls]  # what the table calls a wall, and which it is\n"
         for word, of in sorted(table.walls.items()):
-            text += _line_text(toml_text(word), of, ", ".join([*WALLS, BY_DIRECTION]))
+            text += _line_text(toml_value(word), of, ", ".join([*WALLS, BY_DIRECTION]))
     return text
 
 

@@ -5,7 +5,8 @@ import re
 import tomllib
 
 from ..errors import InputError
-from .mapping import BY_DIRECTION, KEYS, WALLS, Guess, MappedTable, find_key, must_be_stated, toml_text
+from ..toml import toml_value
+from .mapping import BY_DIRECTION, KEYS, WALLS, Guess, MappedTable, find_key, must_be_stated
 from .problems import Problems, quoted, to_number
 from .text import Form
 
@@ -28,7 +29,7 @@ class _Reader:
         """Line of the key in the table, which the TOML reader does not provide."""
         first = self.headers[table] if table is not None and table < len(self.headers) else 0
         last = self.headers[table + 1] - 1 if table is not None and table + 1 < len(self.headers) else len(self.lines)
-        found = [n for name in (key, toml_text(key), f"'{key}'") for n in self.places.get(name, []) if first < n <= last]
+        found = [n for name in (key, toml_value(key), f"'{key}'") for n in self.places.get(name, []) if first < n <= last]
         return min(found, default=max(first, 1))
 
     def read(self, root):
