@@ -6,7 +6,8 @@ namespace mcdem::inline ensemble {
 namespace {
 
 void add(GapReduction& gap_reduction, const char* metric, const Estimate& before, const Estimate& after) {
-    if (before.available() && after.available()) gap_reduction.metrics[metric] = {before.value, after.value};
+    if (before.available() && after.available())
+        gap_reduction.metrics.push_back({metric, {before.value, after.value}});
 }
 
 }  // namespace
