@@ -209,7 +209,7 @@ TEST_F(ExperimentCommandTest, MeasuredDataAreNotOverwritten) {
     EXPECT_EQ(bytes_of_file(path("e/grains.csv")), before);
     const auto unwritable = from_run("/proc/nowhere", {"--replica", "1"});
     EXPECT_EQ(unwritable.exit_code, 1);
-    EXPECT_THAT(unwritable.err, HasSubstr("/proc/nowhere: cannot be made"));
+    EXPECT_THAT(unwritable.err, HasSubstr("/proc/nowhere: "));
 }
 
 TEST_F(ExperimentCommandTest, ErrorsInTablesAreReportedWithTheirLines) {
