@@ -132,9 +132,10 @@ void write_files(const FromRunCommand& command, const Experiment& experiment) {
     auto files = experiment_files(experiment, command.gzip ? Packed::gzip : Packed::plain);
     files[sums_file] = sums_text(files);
     const fs::path out = whole_path(command.out);
-    make_folder(out.parent_path());
-    remove_temporaries_of(out);
-    const NewFolder beside(out);
+    const fs::path place = fs::exists(out) ? out / "experiment" : out;  // on the same file system
+    make_folder(place.parent_path());
+    remove_temporaries_of(place);
+    const NewFolder beside(place);
     const fs::path work = beside.path() / "experiment";
     make_folder(work);
     for (const auto& [name, bytes] : files) replace_file(work / name, bytes);
@@ -144,10 +145,10 @@ void write_files(const FromRunCommand& command, const Experiment& experiment) {
               command.run +
                   ": does not give a valid experiment, so nothing is written. Run the scene again, or lower "
                   "the measurement errors. Problems:");
-    if (fs::exists(out))
-        put_in_place(work, out);
-    else
+    if (place == out)
         move_file(work, out);
+    else
+        put_in_place(work, out);
 }
 
 void make_experiment(const FromRunCommand& command) {
