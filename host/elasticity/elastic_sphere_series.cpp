@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <boost/math/special_functions/legendre.hpp>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -11,26 +11,13 @@ namespace {
 
 using std::numbers::pi;
 
-/// Nodes y in (0, 1) and weights that integrate even functions of y from 0 to 1.
-struct Quadrature {
-    Eigen::ArrayXd node, weight;
-};
+/// Gauss's rule with enough nodes for the moments of order n over a cap of radius a/R while n a/R is below
+/// about 260, the maximum in sphere_self_displacement. Its positive half integrates even functions from 0
+/// to 1.
+using CapQuadrature = boost::math::quadrature::gauss<double, 300>;
 
-/// The positive half of Gauss's rule, with enough nodes for the moments of order n over a cap of radius a/R
-/// while n a/R is below about 260, the maximum in sphere_self_displacement.
-const Quadrature& cap_quadrature() {
-    static const Quadrature quadrature = [] {
-        constexpr int order = 300;
-        const auto zeros = boost::math::legendre_p_zeros<double>(order);
-        Quadrature q{Eigen::ArrayXd(zeros.size()), Eigen::ArrayXd(zeros.size())};
-        for (std::size_t i = 0; i < zeros.size(); ++i) {
-            const double slope = boost::math::legendre_p_prime(order, zeros[i]);
-            q.node[i] = zeros[i];
-            q.weight[i] = 2 / ((1 - zeros[i] * zeros[i]) * slope * slope);
-        }
-        return q;
-    }();
-    return quadrature;
+Eigen::Map<const Eigen::ArrayXd> array_of(const std::vector<double>& values) {
+    return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
 /// Moments of order n, radial and meridional, of a unit load along the plate normal distributed over a cap.
@@ -92,7 +79,7 @@ SphereDisplacement sphere_displacement(double poisson_ratio, double s) {
 
 double sphere_self_displacement(double poisson_ratio, double a) {
     // With r = a sqrt(1 - y^2) the punch has weight 1 in y and the Hertz pressure 3 y^2.
-    const auto& [y, punch] = cap_quadrature();
+    const auto y = array_of(CapQuadrature::abscissa()), punch = array_of(CapQuadrature::weights());
     const Eigen::ArrayXd hertz = 3 * y.square() * punch;
     const Eigen::ArrayXd r2 = a * a * (1 - y.square());
     const Eigen::ArrayXd x = (1 - r2).sqrt();  // cos(theta)

@@ -6,7 +6,8 @@ namespace mcdem::inline ensemble {
 namespace {
 
 void add(GapReduction& gap_reduction, const char* metric, const Estimate& before, const Estimate& after) {
-    if (before.available() && after.available()) gap_reduction.metrics[metric] = {before.value, after.value};
+    if (before.available() && after.available())
+        gap_reduction.metrics.push_back({metric, {before.value, after.value}});
 }
 
 }  // namespace
@@ -31,10 +32,9 @@ void add_paper_metrics(GapReduction& gap_reduction, const Recording& experiment,
     }
     const Eigen::ArrayXd experiment_force = mean_without(by_replica(measured, top_force), -1);
     for (std::size_t level = 0; level < measured.size(); ++level) {
-        const auto i = static_cast<Eigen::Index>(level);
         if (measured[level].phase == Phase::load)
             gap_reduction.top_force.push_back(
-                {measured[level].displacement, experiment_force[i], forces[0][i], forces[1][i]});
+                {measured[level].displacement, experiment_force[level], forces[0][level], forces[1][level]});
     }
 }
 

@@ -82,19 +82,15 @@ void check_balance(const Experiment& experiment, Findings& findings) {
         if (found.relative.size() < min_grains) continue;
         typical.push_back(median(found.relative));
         if (const double errors = median(found.in_errors); errors > max_unbalanced)
-            unbalanced.add(scan, [&] {
-                return fmt::format("{:.2g} times what the errors explain, {:.0f} % of the forces", errors,
-                                   100 * typical.back());
-            });
+            unbalanced.add(scan, "{:.2g} times what the errors explain, {:.0f} % of the forces", errors,
+                           100 * typical.back());
     }
     if (!typical.empty())
-        findings.note(contacts_file,
-                      fmt::format("of the forces on a grain in the bulk, {:.2g} % do not cancel (median)",
-                                  100 * median(typical)));
+        findings.note(contacts_file, "of the forces on a grain in the bulk, {:.2g} % do not cancel (median)",
+                      100 * median(typical));
     findings.odd(
-        contacts_file,
-        "forces on the grains do not cancel, was the packing at rest, are contacts left out? Frames: ",
-        unbalanced);
+        contacts_file, unbalanced,
+        "forces on the grains do not cancel, was the packing at rest, are contacts left out? Frames: ");
 }
 
 }  // namespace mcdem::experiment

@@ -47,21 +47,16 @@ void check_places(const Recording& recording, Findings& findings) {
         for (const Contact& contact : scan.contacts) {
             const double distance = gap(recording, scan, contact);
             if (distance > max_apart * diameter)
-                distant.add(scan, [&] {
-                    return fmt::format("{}, {:.3g} mm", names(recording, contact), 1e3 * distance);
-                });
+                distant.add(scan, "{}, {:.3g} mm", names(recording, contact), 1e3 * distance);
             const double away = apart(recording.box, at(scan.position, contact.grain), contact.point).norm();
             if (away > 1.5 * radius_of(recording, contact.grain))
-                off.add(scan, [&] {
-                    return fmt::format("{}, {:.3g} mm from the centre of grain {}", names(recording, contact),
-                                       1e3 * away, contact.grain);
-                });
+                off.add(scan, "{}, {:.3g} mm from the centre of grain {}", names(recording, contact),
+                        1e3 * away, contact.grain);
         }
     }
-    findings.odd(contacts_file,
-                 "contacts of grains that do not touch, are grains and frames numbered as in grains.csv? ",
-                 distant);
-    findings.odd(contacts_file, "contact points away from their grain: ", off);
+    findings.odd(contacts_file, distant,
+                 "contacts of grains that do not touch, are grains and frames numbered as in grains.csv? ");
+    findings.odd(contacts_file, off, "contact points away from their grain: ");
 }
 
 /// Direction in which a contact repels its grain.
@@ -79,15 +74,13 @@ void check_signs(const Recording& recording, double force_threshold, Findings& f
             if (scan.position.empty() || contact.force.norm() < 3 * force_threshold) continue;
             ++all;
             if (contact.force.dot(outward(recording.box, scan, contact)) < 0)
-                pulls.add(scan, [&] {
-                    return fmt::format("{}, {:.3g} N", names(recording, contact), contact.force.norm());
-                });
+                pulls.add(scan, "{}, {:.3g} N", names(recording, contact), contact.force.norm());
         }
     if (pulls.count() > max_pulling * static_cast<double>(all))
         findings.odd(contacts_file,
-                     fmt::format("of {} contacts above three thresholds many pull their grain: the "
-                                 "force must be that on `grain`, by `partner`: {}",
-                                 all, pulls.text()));
+                     "of {} contacts above three thresholds many pull their grain: the force must be that on "
+                     "`grain`, by `partner`: {}",
+                     all, pulls.text());
 }
 
 void check_threshold(const Recording& recording, double force_threshold, Findings& findings) {
@@ -100,18 +93,15 @@ void check_threshold(const Recording& recording, double force_threshold, Finding
             ++all;
             weakest = std::min(weakest, force);
             if (force < force_threshold)
-                below.add(scan, [&] {
-                    return fmt::format("{}, {:.3g} mN", names(recording, contact), 1e3 * force);
-                });
+                below.add(scan, "{}, {:.3g} mN", names(recording, contact), 1e3 * force);
         }
-    findings.odd(contacts_file,
-                 fmt::format("forces below the stated threshold of {:.3g} mN: ", 1e3 * force_threshold),
-                 below);
+    findings.odd(contacts_file, below,
+                 "forces below the stated threshold of {:.3g} mN: ", 1e3 * force_threshold);
     if (force_threshold > 0 && all >= many_contacts && weakest > gap_in_forces * force_threshold)
-        findings.odd(contacts_file,
-                     fmt::format("of {} contacts the weakest has {:.3g} mN: the threshold is higher "
-                                 "than the stated {:.3g} mN",
-                                 all, 1e3 * weakest, 1e3 * force_threshold));
+        findings.odd(
+            contacts_file,
+            "of {} contacts the weakest has {:.3g} mN: the threshold is higher than the stated {:.3g} mN",
+            all, 1e3 * weakest, 1e3 * force_threshold);
 }
 
 void check_gauge(const Recording& recording, double force_threshold, Findings& findings) {
@@ -128,9 +118,9 @@ void check_gauge(const Recording& recording, double force_threshold, Findings& f
     const double ratio = median(ratios);
     if (ratio < 1 / gauge_range || ratio > gauge_range)
         findings.odd(contacts_file,
-                     fmt::format("the contacts with the plate add up to {:.3g} times the top force: "
-                                 "are the units or signs the same, are contacts left out?",
-                                 ratio));
+                     "the contacts with the plate add up to {:.3g} times the top force: are the units or "
+                     "signs the same, are contacts left out?",
+                     ratio);
 }
 
 /// Typical force over that of Hertz's law at the typical overlap, for the stronger half of the contacts at
@@ -171,10 +161,9 @@ void check_stiffness(const Experiment& experiment, Findings& findings) {
     const double ratio = force_over_hertz(experiment.recording, *strongest, *modulus, nu);
     if (ratio < 1 / hertz_range || ratio > hertz_range)
         findings.odd(contacts_file,
-                     fmt::format("at the highest load forces are {:.3g} times those of Hertz at the "
-                                 "measured overlaps: are grains.youngs_modulus [Pa], the forces [N] "
-                                 "and the diameters [m] in these units?",
-                                 ratio));
+                     "at the highest load forces are {:.3g} times those of Hertz at the measured overlaps: "
+                     "are grains.youngs_modulus [Pa], the forces [N] and the diameters [m] in these units?",
+                     ratio);
 }
 
 }  // namespace

@@ -10,16 +10,6 @@
 
 namespace mcdem::inline experiment {
 
-void Tally::add(const Scan& scan, const std::function<std::string()>& example) {
-    ++count_;
-    if (first_ < 0) {
-        first_ = scan.frame;
-        example_ = example();
-    }
-    if (last_ != scan.frame) ++frames_;
-    last_ = scan.frame;
-}
-
 std::string Tally::text() const {
     return fmt::format("{} in {} frame{}, first in frame {}: {}", count_, frames_, frames_ == 1 ? "" : "s",
                        first_, example_);

@@ -22,15 +22,15 @@ void check_volume(const Recording& recording, Findings& findings) {
     for (const double diameter : recording.diameter) volume += std::numbers::pi / 6 * std::pow(diameter, 3);
     const double fraction = volume / (floor_area(recording.box) * recording.scans.front().plate_z);
     if (fraction < min_fraction)
-        findings.odd(grains_file,
-                     fmt::format("the grains fill {:.2g} of the box below the plate: are diameters "
-                                 "radii, or grains left out?",
-                                 fraction));
+        findings.odd(
+            grains_file,
+            "the grains fill {:.2g} of the box below the plate: are diameters radii, or grains left out?",
+            fraction);
     if (fraction > max_fraction)
         findings.odd(grains_file,
-                     fmt::format("the grains have {:.3g} times the volume of the box below the plate: "
-                                 "are diameters too large, or is the box too small?",
-                                 fraction));
+                     "the grains have {:.3g} times the volume of the box below the plate: are diameters too "
+                     "large, or is the box too small?",
+                     fraction);
 }
 
 void check_walls(const Recording& recording, Findings& findings) {
@@ -42,12 +42,10 @@ void check_walls(const Recording& recording, Findings& findings) {
                 const double inside =
                     radius - wall_distance(recording.box, wall, scan.plate_z, at(scan.position, i));
                 if (inside > max_in_wall * radius)
-                    tally.add(scan, [&] {
-                        return fmt::format("grain {} by {:.3g} mm in {}", i, 1e3 * inside,
-                                           wall_name(recording.box, wall));
-                    });
+                    tally.add(scan, "grain {} by {:.3g} mm in {}", i, 1e3 * inside,
+                              wall_name(recording.box, wall));
             }
-    findings.odd(grains_file, "grains reach into a wall by more than half their radius: ", tally);
+    findings.odd(grains_file, tally, "grains reach into a wall by more than half their radius: ");
 }
 
 void check_overlaps(const Recording& recording, Findings& findings) {
@@ -61,14 +59,11 @@ void check_overlaps(const Recording& recording, Findings& findings) {
             const double overlap =
                 sum - apart(recording.box, at(scan.position, j), at(scan.position, i)).norm();
             if (overlap > max_overlap * sum)
-                tally.add(scan, [&] {
-                    return fmt::format("grains {} and {} by {:.3g} mm", std::min(i, j), std::max(i, j),
-                                       1e3 * overlap);
-                });
+                tally.add(scan, "grains {} and {} by {:.3g} mm", std::min(i, j), std::max(i, j),
+                          1e3 * overlap);
         });
     }
-    findings.odd(grains_file,
-                 fmt::format("grains overlap by more than {} of their radii together: ", max_overlap), tally);
+    findings.odd(grains_file, tally, "grains overlap by more than {} of their radii together: ", max_overlap);
 }
 
 /// Loose grains move by up to half a diameter; a move to a neighbour's position indicates exchanged numbers.
@@ -80,14 +75,12 @@ void check_jumps(const Recording& recording, Findings& findings) {
         for (int i = 0; before && i < static_cast<int>(scan.position.size()); ++i) {
             const double jump = (at(scan.position, i) - at(before->position, i)).norm();
             if (jump > 2 * max_jump * radius_of(recording, i) + std::abs(scan.plate_z - before->plate_z))
-                tally.add(scan, [&] {
-                    return fmt::format("grain {} by {:.3g} mm since frame {}", i, 1e3 * jump, before->frame);
-                });
+                tally.add(scan, "grain {} by {:.3g} mm since frame {}", i, 1e3 * jump, before->frame);
         }
         before = &scan;
     }
-    findings.odd(grains_file,
-                 "grains jump by most of a diameter from frame to frame, are they numbered alike? ", tally);
+    findings.odd(grains_file, tally,
+                 "grains jump by most of a diameter from frame to frame, are they numbered alike? ");
 }
 
 }  // namespace

@@ -33,18 +33,15 @@ void missing_frames(const Recording& recording, Findings& findings) {
         if (const long frames = of_phase[static_cast<int>(phase)]; frames > 0 && frames < min_frames)
             findings.missing(
                 plate_file,
-                fmt::format("frames of {}ing, there are only {}: at which displacement a gap opens "
-                            "cannot be told",
-                            name(phase), frames));
+                "frames of {}ing, there are only {}: at which displacement a gap opens cannot be told",
+                name(phase), frames);
     const Scan& first = recording.scans.front();
     if (recording.displacement(first) > rest * stroke)
-        findings.missing(
-            recording.diameter.empty() ? plate_file : grains_file,
-            fmt::format(
-                "the packing at rest before the first stroke: frame 0 is {:.3g} mm below plate.start. A "
-                "simulation that starts there has other contacts from then on, top forces differ by some "
-                "per cent (simulated runs: protocol.scan_at_start)",
-                1e3 * recording.displacement(first)));
+        findings.missing(recording.diameter.empty() ? plate_file : grains_file,
+                         "the packing at rest before the first stroke: frame 0 is {:.3g} mm below "
+                         "plate.start. A simulation that starts there has other contacts from then on, top "
+                         "forces differ by some per cent (simulated runs: protocol.scan_at_start)",
+                         1e3 * recording.displacement(first));
 }
 
 void missing_positions(const Recording& recording, Findings& findings) {
@@ -58,9 +55,9 @@ void missing_positions(const Recording& recording, Findings& findings) {
     const auto scans = std::ranges::count_if(recording.scans, without);
     if (scans > 0)
         findings.missing(grains_file,
-                         fmt::format("positions in {} of {} frames: overlaps and displacements of "
-                                     "grains are compared in the others only",
-                                     scans, recording.scans.size()));
+                         "positions in {} of {} frames: overlaps and displacements of grains are compared in "
+                         "the others only",
+                         scans, recording.scans.size());
 }
 
 /// Use of contacts with a wall.
@@ -92,14 +89,13 @@ void missing_contacts(const Recording& recording, Findings& findings) {
                                 "the grains, buoyancy and "
                                 "tilt leave hardly a trace there");
     if (empty > 0)
-        findings.missing(
-            contacts_file,
-            fmt::format("contacts in {} of {} frames under load: forces are compared in the others only",
-                        empty, frames));
+        findings.missing(contacts_file,
+                         "contacts in {} of {} frames under load: forces are compared in the others only",
+                         empty, frames);
     for (const Wall wall : walls_of(recording.box))
         if (!seen[static_cast<int>(wall)])
-            findings.missing(contacts_file, fmt::format("contacts with {}: {}",
-                                                        wall_name(recording.box, wall), told_by(wall)));
+            findings.missing(contacts_file, "contacts with {}: {}", wall_name(recording.box, wall),
+                             told_by(wall));
 }
 
 double sine(const Vec3& a, const Vec3& b) { return a.cross(b).norm() / (a.norm() * b.norm()); }
@@ -140,14 +136,13 @@ void missing_settings(const Experiment& experiment, Findings& findings) {
     if (!unknown.empty())
         findings.missing(
             settings_file,
-            fmt::format(
-                "{}: a diagnosis warns if a stated value is not that of the scene, which it simulates",
-                fmt::join(unknown, ", ")));
+            "{}: a diagnosis warns if a stated value is not that of the scene, which it simulates",
+            fmt::join(unknown, ", "));
     if (!exact.empty())
         findings.missing(settings_file,
-                         fmt::format("[uncertainty] of {}: how far each may be from the truth says "
-                                     "whether a gap is an effect or a calibration",
-                                     fmt::join(exact, ", ")));
+                         "[uncertainty] of {}: how far each may be from the truth says whether a gap is an "
+                         "effect or a calibration",
+                         fmt::join(exact, ", "));
 }
 
 }  // namespace

@@ -35,24 +35,19 @@ void check_course(const Recording& recording, Findings& findings) {
         const Scan* before = s > 0 ? &recording.scans[s - 1] : nullptr;
         const bool begins = !before || before->cycle != scan.cycle;
         if (scan.cycle > (before ? before->cycle + 1 : 0))
-            left_out.add(scan, [&] {
-                return fmt::format("cycle {} follows {}", scan.cycle, before ? before->cycle : -1);
-            });
+            left_out.add(scan, "cycle {} follows {}", scan.cycle, before ? before->cycle : -1);
         if (begins ? scan.phase == Phase::unload
                    : before->phase == Phase::unload && scan.phase == Phase::load)
-            unload_first.add(scan,
-                             [&] { return fmt::format("{} of cycle {}", name(scan.phase), scan.cycle); });
+            unload_first.add(scan, "{} of cycle {}", name(scan.phase), scan.cycle);
         if (begins || before->phase != scan.phase || held[s]) continue;
         const double down = before->plate_z - scan.plate_z;
         if ((scan.phase == Phase::load ? down : -down) < -noise)
-            wrong_way.add(scan, [&] {
-                return fmt::format("{:.6g} m after {:.6g} m in phase {}", scan.plate_z, before->plate_z,
-                                   name(scan.phase));
-            });
+            wrong_way.add(scan, "{:.6g} m after {:.6g} m in phase {}", scan.plate_z, before->plate_z,
+                          name(scan.phase));
     }
-    findings.odd(plate_file, "the plate goes against its phase: ", wrong_way);
-    findings.odd(plate_file, "a cycle is one loading and then one unloading: ", unload_first);
-    findings.odd(plate_file, "cycles are left out: ", left_out);
+    findings.odd(plate_file, wrong_way, "the plate goes against its phase: ");
+    findings.odd(plate_file, unload_first, "a cycle is one loading and then one unloading: ");
+    findings.odd(plate_file, left_out, "cycles are left out: ");
 }
 
 void check_start(const Recording& recording, Findings& findings) {
@@ -60,14 +55,13 @@ void check_start(const Recording& recording, Findings& findings) {
     const auto lowest = std::ranges::min_element(recording.scans, {}, &Scan::plate_z);
     const double stroke = highest->plate_z - lowest->plate_z;
     if (highest->plate_z > recording.plate_start + 1e-3 * stroke)
-        findings.odd(settings_file,
-                     fmt::format("plate.start, {:.6g} m, is below the plate of frame {}, {:.6g} m",
-                                 recording.plate_start, highest->frame, highest->plate_z));
+        findings.odd(settings_file, "plate.start, {:.6g} m, is below the plate of frame {}, {:.6g} m",
+                     recording.plate_start, highest->frame, highest->plate_z);
     else if (recording.plate_start > highest->plate_z + std::max(stroke, 0.01 * highest->plate_z))
         findings.odd(settings_file,
-                     fmt::format("plate.start, {:.6g} m, is more than the whole stroke above the "
-                                 "plate's highest position, {:.6g} m",
-                                 recording.plate_start, highest->plate_z));
+                     "plate.start, {:.6g} m, is more than the whole stroke above the plate's highest "
+                     "position, {:.6g} m",
+                     recording.plate_start, highest->plate_z);
 }
 
 void check_gauge(const Experiment& experiment, Findings& findings) {
@@ -75,16 +69,15 @@ void check_gauge(const Experiment& experiment, Findings& findings) {
     Tally pulls;
     double largest = 0, last = 0;
     for (const Scan& scan : recording.scans) {
-        if (scan.top_force() < 0) pulls.add(scan, [&] { return fmt::format("{:.3g} N", scan.top_force()); });
+        if (scan.top_force() < 0) pulls.add(scan, "{:.3g} N", scan.top_force());
         if (scan.phase != Phase::load || scan.cycle != recording.scans.front().cycle) continue;
         largest = std::max(largest, scan.top_force());
         last = scan.top_force();
     }
-    findings.odd(plate_file, "the top force is negative, though the grains press the plate up: ", pulls);
+    findings.odd(plate_file, pulls, "the top force is negative, though the grains press the plate up: ");
     if (last < falls * largest && largest > clear_load * experiment.measurement.force_threshold)
-        findings.odd(
-            plate_file,
-            fmt::format("the top force falls before loading ends, from {:.3g} to {:.3g} N", largest, last));
+        findings.odd(plate_file, "the top force falls before loading ends, from {:.3g} to {:.3g} N", largest,
+                     last);
 }
 
 // The force on the plate and the overlaps of the grains below it: frames of the grains that belong to other
@@ -125,14 +118,11 @@ void check_touch(const Experiment& experiment, const std::vector<Frame>& frames,
         const Scan& scan = *frame.scan;
         const double gap = scan.plate_z - frame.top;
         if (scan.top_force() > unloaded * largest && gap > tolerance)
-            apart.add(scan, [&] {
-                return fmt::format("{:.3g} mm, at a top force of {:.3g} N", 1e3 * gap, scan.top_force());
-            });
+            apart.add(scan, "{:.3g} mm, at a top force of {:.3g} N", 1e3 * gap, scan.top_force());
     }
-    findings.odd(plate_file,
+    findings.odd(plate_file, apart,
                  "the plate carries a force above the highest grain: is plate.start right, and do these "
-                 "frames of the grains belong to these rows of the plate? ",
-                 apart);
+                 "frames of the grains belong to these rows of the plate? ");
 }
 
 void check_force(const Experiment& experiment, const std::vector<Frame>& frames, double largest,
@@ -149,22 +139,19 @@ void check_force(const Experiment& experiment, const std::vector<Frame>& frames,
         const double hertz = stiffness * frame.hertz;
         if (scan.top_force() > loaded * largest && hertz > 0) ratios.push_back(scan.top_force() / hertz);
         if (scan.top_force() < unloaded * largest && hertz > loaded * largest)
-            pressed.add(scan, [&] { return fmt::format("{:.3g} N", scan.top_force()); });
+            pressed.add(scan, "{:.3g} N", scan.top_force());
     }
-    findings.odd(plate_file,
+    findings.odd(plate_file, pressed,
                  "the plate overlaps with grains as under load, but measures hardly any force: are "
-                 "plate.start and the height of the grains right? ",
-                 pressed);
+                 "plate.start and the height of the grains right? ");
     if (ratios.empty()) return;
     const double ratio = median(ratios);
     if (ratio > max_force_ratio || ratio < 1 / max_force_ratio)
-        findings.odd(
-            plate_file,
-            fmt::format(
-                "the top force is {:.2g} times that of Hertz's law from the overlaps with the plate: are "
-                "its unit, plate.start, the height of the grains and their modulus right, and do the "
-                "frames of the grains belong to these rows of the plate?",
-                ratio));
+        findings.odd(plate_file,
+                     "the top force is {:.2g} times that of Hertz's law from the overlaps with the plate: "
+                     "are its unit, plate.start, the height of the grains and their modulus right, and do "
+                     "the frames of the grains belong to these rows of the plate?",
+                     ratio);
 }
 
 }  // namespace
@@ -195,16 +182,15 @@ void check_errors(const Experiment& experiment, Findings& findings) {
     if (has_contacts && errors.force_error == 0) zero.push_back("force_error");
     if (has_contacts && errors.force_threshold == 0) zero.push_back("force_threshold");
     if (!zero.empty())
-        findings.odd(settings_file, fmt::format("{} {} zero: noise that is not stated is taken for a gap",
-                                                fmt::join(zero, ", "), zero.size() == 1 ? "is" : "are"));
+        findings.odd(settings_file, "{} {} zero: noise that is not stated is taken for a gap",
+                     fmt::join(zero, ", "), zero.size() == 1 ? "is" : "are");
     if (experiment.recording.diameter.empty()) return;
     const double part =
         std::max(errors.position_error, errors.diameter_error) / mean_diameter(experiment.recording);
     if (part > 0.05)
         findings.odd(settings_file,
-                     fmt::format("positions or diameters are known to {:.2g} of a diameter only: "
-                                 "overlaps are not larger",
-                                 part));
+                     "positions or diameters are known to {:.2g} of a diameter only: overlaps are not larger",
+                     part);
 }
 
 }  // namespace mcdem::experiment

@@ -59,10 +59,6 @@ void write_experiment(const std::filesystem::path& folder, const Experiment& exp
 /// Contents of these files by name.
 std::map<std::string, std::string> experiment_files(const Experiment& experiment, Packed packed);
 
-/// Throws InputError with the problems that read_experiment would find if these files, not compressed, were
-/// in the folder.
-void expect_readable(const std::filesystem::path& folder, const std::map<std::string, std::string>& texts);
-
 /// SHA-256 and name of each file, in the format of `sha256sum -c`.
 std::string sums_text(const std::map<std::string, std::string>& files);
 

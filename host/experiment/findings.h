@@ -1,6 +1,7 @@
 // The parts of check_experiment, each in the file of its name.
 #pragma once
-#include <functional>
+#include <fmt/format.h>
+
 #include <optional>
 
 #include "experiment/check_experiment.h"
@@ -10,8 +11,16 @@ namespace mcdem::inline experiment {
 /// Counts findings of one kind over the frames and keeps an example.
 class Tally {
 public:
-    /// `example` is called only once.
-    void add(const Scan& scan, const std::function<std::string()>& example);
+    /// The first one is the example; others are only counted.
+    template <class... Args>
+    void add(const Scan& scan, fmt::format_string<Args...> example, Args&&... args) {
+        if (count_++ == 0) {
+            first_ = scan.frame;
+            example_ = fmt::format(example, std::forward<Args>(args)...);
+        }
+        if (last_ != scan.frame) ++frames_;
+        last_ = scan.frame;
+    }
     long count() const { return count_; }
     /// "3 in 2 frames, first in frame 7: <example>"
     std::string text() const;
@@ -22,21 +31,29 @@ private:
     std::string example_;
 };
 
+/// Findings about a file; texts are formats and their arguments.
 class Findings {
 public:
-    void note(const std::string& about, const std::string& text) { add(Severity::note, about, text); }
-    void missing(const std::string& about, const std::string& text) { add(Severity::missing, about, text); }
-    void odd(const std::string& about, const std::string& text) { add(Severity::odd, about, text); }
+    template <class... Args>
+    void note(const std::string& about, fmt::format_string<Args...> text, Args&&... args) {
+        all_.push_back({Severity::note, about, fmt::format(text, std::forward<Args>(args)...)});
+    }
+    template <class... Args>
+    void missing(const std::string& about, fmt::format_string<Args...> text, Args&&... args) {
+        all_.push_back({Severity::missing, about, fmt::format(text, std::forward<Args>(args)...)});
+    }
+    template <class... Args>
+    void odd(const std::string& about, fmt::format_string<Args...> text, Args&&... args) {
+        all_.push_back({Severity::odd, about, fmt::format(text, std::forward<Args>(args)...)});
+    }
     /// The text and what was found, where anything was.
-    void odd(const std::string& about, const std::string& text, const Tally& tally) {
-        if (tally.count()) odd(about, text + tally.text());
+    template <class... Args>
+    void odd(const std::string& about, const Tally& found, fmt::format_string<Args...> text, Args&&... args) {
+        if (found.count()) odd(about, "{}{}", fmt::format(text, std::forward<Args>(args)...), found.text());
     }
     const std::vector<Finding>& all() const { return all_; }
 
 private:
-    void add(Severity severity, const std::string& about, const std::string& text) {
-        all_.push_back({severity, about, text});
-    }
     std::vector<Finding> all_;
 };
 

@@ -15,41 +15,25 @@ constexpr std::uintmax_t largest_settings = 1'000'000;  // bytes
 
 namespace fs = std::filesystem;
 
-/// The tables of an experiment: files in a folder, or the texts that will be written there.
-struct Source {
-    fs::path folder;
-    std::uintmax_t largest = largest_table;
-    const std::map<std::string, std::string>* texts = nullptr;
-
-    std::optional<fs::path> find(const std::string& name, FileProblems& problems) const {
-        if (!texts) return find_table(folder, name, largest, problems);
-        return texts->contains(name) ? std::optional(folder / name) : std::nullopt;
-    }
-    Table open(const fs::path& file, const std::vector<std::string>& columns, FileProblems& problems,
-               const std::vector<std::string>& optional = {}) const {
-        return {file,     columns,  largest,
-                problems, optional, texts ? &texts->at(file.filename().string()) : nullptr};
-    }
-};
-
-void read_tables(const Source& source, Experiment& experiment, FileProblems& problems) {
+void read_tables(const fs::path& folder, std::uintmax_t largest, Experiment& experiment,
+                 FileProblems& problems) {
     Recording& recording = experiment.recording;
     const long problems_before = problems.count();
-    const auto plate = source.find("plate.csv", problems);
-    const auto grains = source.find("grains.csv", problems);
-    const auto contacts = source.find("contacts.csv", problems);
+    const auto plate = find_table(folder, "plate.csv", largest, problems);
+    const auto grains = find_table(folder, "grains.csv", largest, problems);
+    const auto contacts = find_table(folder, "contacts.csv", largest, problems);
     if (problems.count() > problems_before) return;
     if (!plate)
-        return problems.add(source.folder.string(),
+        return problems.add(folder.string(),
                             "must hold plate.csv or plate.csv.gz: the plate's position and force by frame");
     const auto modulus = experiment.materials.find("grains.youngs_modulus");
     const double stiffness =
         modulus == experiment.materials.end() ? std::numeric_limits<double>::infinity() : modulus->second;
-    Table plate_table = source.open(*plate, plate_columns, problems, plate_columns_of_programmes);
+    Table plate_table(*plate, plate_columns, largest, problems, plate_columns_of_programmes);
     read_plate(plate_table, stiffness, recording);
     if (recording.scans.empty()) return;
     if (grains) {
-        Table table = source.open(*grains, grain_columns, problems);
+        Table table(*grains, grain_columns, largest, problems);
         read_grains(table, recording);
     }
     if (!contacts) return;
@@ -57,7 +41,7 @@ void read_tables(const Source& source, Experiment& experiment, FileProblems& pro
     if (!grains)
         return problems.add(contacts->string(),
                             "needs grains.csv with the grains of frame 0: contacts name them");
-    Table table = source.open(*contacts, contact_columns, problems);
+    Table table(*contacts, contact_columns, largest, problems);
     read_contacts(table, stiffness, recording);
 }
 
@@ -84,7 +68,7 @@ Experiment read_experiment(const fs::path& folder, std::uintmax_t largest) {
     Experiment experiment;
     expect_experiment(folder);
     read_settings(folder / "experiment.toml", experiment, problems);
-    read_tables({folder, largest}, experiment, problems);
+    read_tables(folder, largest, experiment, problems);
     problems.report();
     Recording& recording = experiment.recording;
     recording.label = experiment.name;
@@ -105,15 +89,6 @@ std::vector<Experiment> read_experiments(const std::vector<fs::path>& folders, c
     }
     if (experiments.empty()) throw InputError(option + ": must name one folder or more, got none");
     return experiments;
-}
-
-void expect_readable(const fs::path& folder, const std::map<std::string, std::string>& texts) {
-    FileProblems problems;
-    Experiment read;
-    const fs::path settings = folder / "experiment.toml";
-    parse_settings(texts.at(settings.filename().string()), settings.string(), {}, read, problems);
-    read_tables({folder, largest_table, &texts}, read, problems);
-    problems.report();
 }
 
 }  // namespace mcdem::experiment

@@ -4,12 +4,11 @@
 
 namespace mcdem::inline metrics {
 
-bool contacts_known(const Scan& scan) { return !scan.contacts.empty() || scan.coordination_number == 0; }
-
 ForceLists contact_forces(const std::vector<const Scan*>& scans) {
     ForceLists forces;
     for (const auto* scan : scans) {
-        if (!contacts_known(*scan)) continue;
+        // An empty list means "no contacts" only if Z is zero; otherwise contacts were not recorded.
+        if (scan->contacts.empty() && scan->coordination_number != 0) continue;
         ++forces.scans;
         for (const auto& contact : scan->contacts) {
             const double magnitude = contact.force.norm();

@@ -6,13 +6,10 @@
 
 namespace mcdem::inline metrics {
 
-/// An empty list of contacts means "no contacts" only if Z is zero; otherwise contacts were not recorded.
-bool contacts_known(const Scan& scan);
-
 struct ForceLists {
     std::vector<double> grain_grain;  ///< |f| [N]
     std::vector<double> grain_wall;   ///< |f| [N]
-    int scans = 0;                    ///< number of scans with known contacts
+    int scans = 0;                    ///< number of scans whose contacts were recorded
 };
 ForceLists contact_forces(const std::vector<const Scan*>& scans);
 

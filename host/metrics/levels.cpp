@@ -94,7 +94,10 @@ Eigen::ArrayXXd by_replica(const Levels& levels, const Quantity& quantity) {
 }
 
 std::vector<LevelMean> level_means(const Levels& levels, const Quantity& quantity) {
-    const auto values = by_replica(levels, quantity);
+    return level_means(levels, by_replica(levels, quantity));
+}
+
+std::vector<LevelMean> level_means(const Levels& levels, const Eigen::ArrayXXd& values) {
     std::vector<LevelMean> means;
     for (std::size_t l = 0; l < levels.size(); ++l) {
         const Eigen::ArrayXd column = values.col(l);

@@ -37,6 +37,8 @@ struct LevelMean {
     double displacement = 0;  ///< [m]
     Estimate mean;            ///< over replicas, of their means over cycles
 };
+/// Of values by replica (rows) and level (columns), or of a quantity.
+std::vector<LevelMean> level_means(const Levels& levels, const Eigen::ArrayXXd& values);
 std::vector<LevelMean> level_means(const Levels& levels, const Quantity& quantity);
 
 /// Position of a reference level among simulated ones: (1 - weight) of `below` + weight of `above`.

@@ -7,20 +7,16 @@
 namespace mcdem::inline metrics {
 
 std::vector<ScalingPoint> scaling_points(const Levels& levels) {
-    const auto force = by_replica(levels, top_force);
+    const auto force = level_means(levels, top_force);
     const Eigen::ArrayXXd product = by_replica(levels, [](const Scan& s) { return s.coordination_number; }) *
                                     by_replica(levels, [](const Scan& s) { return s.packing_fraction; }) *
                                     by_replica(levels, [](const Scan& s) { return s.branch_length; }) *
                                     by_replica(levels, [](const Scan& s) { return s.mean_force; });
+    const auto products = level_means(levels, product);
     std::vector<ScalingPoint> points;
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-        const auto mean_of = [&](const Eigen::ArrayXXd& values) {
-            const Eigen::ArrayXd column = values.col(l);
-            return mean_over_replicas({column.data(), static_cast<std::size_t>(column.size())});
-        };
-        const ScalingPoint point{levels[l].phase, levels[l].displacement, mean_of(force), mean_of(product)};
-        if (point.top_force.available() && point.product.available()) points.push_back(point);
-    }
+    for (std::size_t l = 0; l < levels.size(); ++l)
+        if (force[l].mean.available() && products[l].mean.available())
+            points.push_back({levels[l].phase, levels[l].displacement, force[l].mean, products[l].mean});
     return points;
 }
 

@@ -209,7 +209,17 @@ TEST_F(ExperimentCommandTest, MeasuredDataAreNotOverwritten) {
     EXPECT_EQ(bytes_of_file(path("e/grains.csv")), before);
     const auto unwritable = from_run("/proc/nowhere", {"--replica", "1"});
     EXPECT_EQ(unwritable.exit_code, 1);
-    EXPECT_THAT(unwritable.err, HasSubstr("/proc/nowhere: cannot be made"));
+    EXPECT_THAT(unwritable.err, HasSubstr("/proc/nowhere: "));
+}
+
+TEST_F(ExperimentCommandTest, OtherFilesInTheFolderAreKept) {
+    run("a");
+    fs::create_directory(path("e"));
+    std::ofstream(path("e/notes")) << "mine";
+    expect_done(from_run("e", {"--replica", "0"}));
+    EXPECT_EQ(bytes_of_file(path("e/notes")), "mine");
+    expect_done(mcdem({"verify", "e"}));
+    EXPECT_EQ(std::distance(fs::directory_iterator(path("e")), {}), 6);  // no temporary files
 }
 
 TEST_F(ExperimentCommandTest, ErrorsInTablesAreReportedWithTheirLines) {

@@ -277,12 +277,23 @@ def an_experiment_carries_sums(place):
         expect(done, 1, "SHA256SUMS does not name it", "stdout")
         assert done.stdout.count("DAMAGED OR CHANGED") == 1 and "plate.csv" in done.stdout.splitlines()[-1], done.stdout
         (place / "lab/SHA256SUMS").write_text(sums)
-        expect(mcdem(place, *words), 0)  # completes what was interrupted at the very end
         table = next((place / "lab").glob("plate.csv*"))
         table.write_bytes(table.read_bytes()[:-2])
-        expect(mcdem(place, *words), 2, "holds another experiment, or one that was changed")
-        expect(mcdem(place, *words, "--seed", "2"), 2, "holds another experiment")
+        expect(mcdem(place, *words), 2, "holds another experiment or run")
         expect(mcdem(place, "verify", "lab"), 1, "DAMAGED OR CHANGED", "stdout")
+        shutil.rmtree(place / "lab")
+
+
+def a_killed_call_leaves_no_part_of_an_experiment(place):
+    whole_run(place)
+    words = ["experiment", "from-run", "out", "--replica", "mc_dem", "--out", "lab"]
+    before = {path.name for path in place.iterdir()}
+    for name in ["plate.csv", "lab"]:
+        done = mcdem(place, *words, fault="KILL", fault_at=1, fault_kinds="rename", fault_name=name)
+        assert done.returncode == -9 and not (place / "lab").exists(), done
+        expect(mcdem(place, *words), 0)
+        assert {path.name for path in place.iterdir()} == before | {"lab"}
+        expect(mcdem(place, "verify", "lab"), 0, "no damage found", "stdout")
         shutil.rmtree(place / "lab")
 
 

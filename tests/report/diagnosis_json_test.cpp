@@ -121,7 +121,7 @@ TEST(DiagnosisJson, missing_values_are_null_or_empty) {
 TEST(DiagnosisJson, numbers_that_are_not_finite_become_null) {
     auto d = samples::diagnosis(Verdict::effect);
     d.causes[0].amplitude = std::nan("");
-    d.gap_reduction->metrics["Rtop"] = {INFINITY, 1};
+    d.gap_reduction->metrics[0].second = {INFINITY, 1};
     const auto json = parsed(d);
     EXPECT_TRUE(json["detection_limits"][12]["minimum_amplitude"].is_null());  // infinite: cannot be detected
     EXPECT_TRUE(json["causes"][0]["amplitude"].is_null());

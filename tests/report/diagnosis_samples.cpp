@@ -223,7 +223,7 @@ Diagnosis with_texts(Diagnosis d, const std::string& text) {
     for (auto& packing : d.packings) packing.experiment = text;
     for (auto& refinement : d.refinements) refinement.effect = refinement.key = refinement.unit = text;
     for (auto* list : {&d.not_measured, &d.not_testable}) *list = {text};
-    if (d.gap_reduction) d.gap_reduction->held_out = text, d.gap_reduction->metrics[text] = {1, 2};
+    if (d.gap_reduction) d.gap_reduction->held_out = text, d.gap_reduction->metrics.push_back({text, {1, 2}});
     d.provenance[text] = text;
     return d;
 }

@@ -64,15 +64,6 @@ TEST(DiagnosisWords, positions_are_described) {
     EXPECT_EQ(phase_words(""), "both phases");
 }
 
-TEST(DiagnosisWords, metrics_are_in_the_papers_order) {
-    GapReduction gap_reduction;
-    gap_reduction.metrics = {
-        {"another", {0, 0}}, {"bhat", {0, 0}}, {"Rtop", {0, 0}}, {"errZ", {0, 0}}, {"errf", {0, 0}}};
-    std::string order;
-    for (const auto& [name, values] : metrics_in_order(gap_reduction)) order += name + " ";
-    EXPECT_EQ(order, "Rtop errf errZ bhat another ");
-}
-
 TEST(DiagnosisWords, signs_are_described_as_directions) {
     EXPECT_EQ(directed_amount("modulus", std::log(0.95), 0.01, "relative"),
               "5.00 ± 0.95 % lower than stated");

@@ -12,9 +12,9 @@
 #include "core/container.h"
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/make_folder.h"
 #include "diagnose/infer/effects.h"
 #include "experiment/instrument.h"
-#include "io/result_folder.h"
 #include "io/results.h"
 #include "metrics/programmes.h"
 #include "scene/packing_fields.h"
@@ -32,8 +32,6 @@ struct FromRunCommand {
     std::uint64_t seed = 1;
     bool gzip = false;
 };
-
-const char* const experiment_toml = "experiment.toml";
 
 std::size_t chosen_replica(const Run& run, const FromRunCommand& command) {
     const auto& all = run.recordings;
@@ -129,56 +127,32 @@ void warn_of_start(const Recording& truth) {
             1e3 * truth.displacement(first));
 }
 
-/// A run that was changed by others, or an instrument with extreme errors, may give data that no reader
-/// accepts.
-void expect_experiment_of(const FromRunCommand& command, const Experiment& experiment) {
-    try {
-        expect_readable(command.out, experiment_files(experiment, Packed::plain));
-    } catch (const InputError& error) {
-        std::vector<std::string> problems{
-            command.run +
-            ": does not give a valid experiment, so nothing is written. Run the scene again, or lower the "
-            "measurement errors. Problems:"};
-        for (const std::string& problem : error.problems()) problems.push_back("  " + problem);
-        throw InputError(problems);
-    }
-}
-
-/// Whether an earlier call was interrupted: the digests are written first.
-bool is_begun(const fs::path& out) { return fs::exists(out / sums_file); }
-
-/// Files written by an earlier call are kept; files with other contents are not replaced.
-void expect_these_or_none(const fs::path& out, const std::map<std::string, std::string>& files) {
-    for (const auto& [name, bytes] : files)
-        if (fs::exists(out / name) && read_file(out / name) != bytes)
-            throw InputError(
-                fmt::format("--out: {} holds another experiment, or one that was changed: name another "
-                            "folder, or remove it "
-                            "first",
-                            out.string()));
-}
-
-/// The digests are written first and experiment.toml last, so that the same command can complete an
-/// interrupted call.
+/// In a folder of its own first, which is renamed, so that a killed call leaves no part of an experiment.
 void write_files(const FromRunCommand& command, const Experiment& experiment) {
-    const fs::path out = command.out;
     auto files = experiment_files(experiment, command.gzip ? Packed::gzip : Packed::plain);
-    const std::string sums = sums_text(files);
-    files[sums_file] = sums;
-    expect_these_or_none(out, files);
-    std::optional<FolderLock> lock;
-    if (!fs::exists(out / experiment_toml)) lock.emplace(open_output_folder(out));
-    replace_file(out / sums_file, sums);  // even if it exists: this syncs the folder
-    for (const bool last : {false, true})
-        for (const auto& [name, bytes] : files)
-            if ((name == experiment_toml) == last && !fs::exists(out / name)) replace_file(out / name, bytes);
-    for (const auto& [name, bytes] : files)
-        if (read_file(out / name) != bytes)
-            throw RunError((out / name).string() + ": what was written is not what is read back");
+    files[sums_file] = sums_text(files);
+    const fs::path out = whole_path(command.out);
+    const fs::path place = fs::exists(out) ? out / "experiment" : out;  // on the same file system
+    make_folder(place.parent_path());
+    remove_temporaries_of(place);
+    const NewFolder beside(place);
+    const fs::path work = beside.path() / "experiment";
+    make_folder(work);
+    for (const auto& [name, bytes] : files) replace_file(work / name, bytes);
+    // A run that was changed by others, or an instrument with extreme errors, may give data that no reader
+    // accepts.
+    read_back(work, command.out,
+              command.run +
+                  ": does not give a valid experiment, so nothing is written. Run the scene again, or lower "
+                  "the measurement errors. Problems:");
+    if (place == out)
+        move_file(work, out);
+    else
+        put_in_place(work, out);
 }
 
 void make_experiment(const FromRunCommand& command) {
-    if (!is_begun(command.out)) expect_free(command.out);
+    expect_free(command.out);
     const auto uncertainty = read_uncertainty(command.uncertainty);
     const Recording truth = read_replica(command);
     expect_small_errors(command.instrument.stated, truth);
@@ -186,7 +160,6 @@ void make_experiment(const FromRunCommand& command) {
     Experiment experiment = experiment_from(truth, command.instrument, command.seed);
     experiment.uncertainty = uncertainty;
     if (!command.name.empty()) experiment.name = command.name;
-    expect_experiment_of(command, experiment);
     write_files(command, experiment);
     std::size_t real = 0, seen = 0;
     for (const Scan& scan : truth.scans) real += scan.contacts.size();

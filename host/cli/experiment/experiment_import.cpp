@@ -15,7 +15,6 @@
 #include "core/make_folder.h"
 #include "core/parameters.h"
 #include "experiment/settings.h"
-#include "io/result_folder.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -36,12 +35,6 @@ std::string text_of_file(const std::string& file) {
         throw InputError(fmt::format("{}: must be a text of at most 1 MB, got {}", file,
                                      fs::exists(file, error) ? "something else" : "no such file"));
     return read_file(file);
-}
-
-/// The absolute path of the folder, without a final slash.
-fs::path whole_path(const std::string& folder) {
-    const fs::path path = fs::absolute(folder).lexically_normal();
-    return path.has_filename() ? path : path.parent_path();
 }
 
 /// Values that are not in the tables; their problems are reported together with all others.
@@ -106,29 +99,6 @@ int read_tables(const ImportCommand& command, const nlohmann::json& request, con
     throw InputError(problems);
 }
 
-/// Reads the result before it is moved to `out`. Messages name files as in `out`.
-Experiment read_back(const fs::path& folder, const std::string& out) {
-    try {
-        return read_experiment(folder);
-    } catch (const InputError& error) {
-        std::vector<std::string> problems{"with this mapping the tables do not give a valid experiment:"};
-        for (std::string problem : error.problems()) {
-            if (problem.starts_with(folder.string())) problem.replace(0, folder.string().size(), out);
-            problems.push_back(problem);
-        }
-        throw InputError(problems);
-    }
-}
-
-/// Moves the tables into place, experiment.toml last, because it makes the folder an experiment.
-void put_in_place(const fs::path& work, const fs::path& out) {
-    const FolderLock lock = open_output_folder(out);
-    expect_free(out);  // checked again
-    for (const char* table : {"contacts.csv", "grains.csv", "plate.csv", "experiment.toml"})
-        for (const std::string end : {"", ".gz"})
-            if (fs::exists(work / (table + end))) move_file(work / (table + end), out / (table + end));
-}
-
 void print_summary(const std::string& out, const Recording& recording) {
     std::size_t contacts = 0, measured = 0;
     for (const Scan& scan : recording.scans)
@@ -157,7 +127,8 @@ int run_import(const ImportCommand& command) {
         known.recording.plate_start = std::stod(result["plate_start"].get<std::string>());
     replace_file(work / "experiment.toml", settings_text(known));
     try {
-        const Experiment read = read_back(work, fs::path(command.out).lexically_normal().string());
+        const Experiment read = read_back(work, fs::path(command.out).lexically_normal().string(),
+                                          "with this mapping the tables do not give a valid experiment:");
         put_in_place(work, out);
         create_file(kept_mapping(command), read_file(work / "mapping.toml"));
         for (const std::string note : result["notes"]) spdlog::warn("{}", note);

@@ -55,9 +55,8 @@ std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const GapSpace&
     std::vector<NuisanceFit> fits;
     for (std::size_t k = 0; k < evidence.nuisances.size(); ++k) {
         const NuisancePrior& prior = evidence.nuisances[k];
-        const auto i = static_cast<Eigen::Index>(k);
-        fits.push_back({prior.name, values[i], errors[i], prior.sigma, prior.unit,
-                        std::abs(values[i]) > far_out * prior.sigma});
+        fits.push_back({prior.name, values[k], errors[k], prior.sigma, prior.unit,
+                        std::abs(values[k]) > far_out * prior.sigma});
     }
     return fits;
 }

@@ -67,8 +67,9 @@ struct GapReduction {
     double fraction = 0;           ///< 1 - after/before
     std::array<double, 2> interval{0, 0};  ///< 90 %
     double placebo = 0;
-    std::optional<double> confirmed;                       ///< fraction from real runs
-    std::map<std::string, std::array<double, 2>> metrics;  ///< Rtop, errf [N], errZ, bhat: before and after
+    std::optional<double> confirmed;  ///< fraction from real runs
+    /// Rtop, errf [N], errZ, bhat, as far as known: name; before and after.
+    std::vector<std::pair<std::string, std::array<double, 2>>> metrics;
     std::vector<std::array<double, 4>>
         top_force;  ///< displacement [m], experiment, before and after [N], during loading
     /// Interval of the plate's displacement in which the effect was fitted [m]; equal ends: not one interval.

@@ -42,13 +42,12 @@ Location locate(const GapSpace& space, const GapData& data, const NullDistributi
     std::vector<std::vector<WhereCell>> rows(2 * observables().size());
     for (std::size_t k = 0; k < data.cells.size(); ++k) {
         const Cell& cell = all[data.cells[k]];
-        const auto i = static_cast<Eigen::Index>(k);
-        const double sigma = space.sigma()[i];
+        const double sigma = space.sigma()[k];
         WhereCell where{std::string(observables()[cell.observable].name),
                         std::string(name(cell.phase)),
                         cell.displacement,
                         gap[data.cells[k]] / sigma,
-                        refitted[i] / sigma,
+                        refitted[k] / sigma,
                         gap[data.cells[k]]};
         location.cells.push_back(where);
         rows[2 * static_cast<std::size_t>(cell.observable) + (cell.phase == Phase::load ? 0 : 1)].push_back(

@@ -50,7 +50,7 @@ bool Convergence::is_relative(std::size_t cell) const {
 
 double Convergence::scale(std::size_t cell) const {
     const double resolution = observables()[cells[cell].observable].resolution;
-    return std::fmax(deviation[static_cast<Eigen::Index>(cell)], resolution / limits.deviations);
+    return std::fmax(deviation[cell], resolution / limits.deviations);
 }
 
 double Convergence::limit(std::size_t cell) const {

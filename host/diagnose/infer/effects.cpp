@@ -208,14 +208,10 @@ std::vector<Nuisance> nuisances(const Model& model, const Experiment& experiment
     if (model.replica.contact.model == ContactModel::mc_dem)
         list.push_back(
             {"gamma", "", gamma_sigma, [](Model& m, double shift) { m.replica.contact.gamma += shift; }});
-    if (const double sigma = stated("grains.friction"); sigma > 0)
-        list.push_back({"friction", "", sigma, [](Model& m, double shift) {
-                            m.replica.grains.friction = std::max(0.0, m.replica.grains.friction + shift);
-                        }});
-    if (const double sigma = stated("walls.friction"); sigma > 0)
-        list.push_back({"wall_friction", "", sigma, [](Model& m, double shift) {
-                            m.replica.walls.friction = std::max(0.0, m.replica.walls.friction + shift);
-                        }});
+    for (const auto& [name, key] :
+         {std::pair{"friction", "grains.friction"}, {"wall_friction", "walls.friction"}})
+        if (const double sigma = stated(key); sigma > 0)
+            list.push_back({name, "", sigma, find_effect(name)->apply});
     return list;
 }
 

@@ -153,7 +153,7 @@ std::vector<std::string> leave_out_failures(Evidence& evidence, const FailureCau
 
 Eigen::VectorXd GapData::in_range(Eigen::VectorXd nuisances) const {
     for (std::size_t k = 0; k < free.size(); ++k) {
-        double& nuisance = nuisances[static_cast<Eigen::Index>(k)];
+        double& nuisance = nuisances[k];
         nuisance = std::clamp(nuisance, -farthest * free[k].sigma, farthest * free[k].sigma);
     }
     return nuisances;

@@ -113,7 +113,7 @@ double gap_size(const GapData& data, const CellChoice& cells, const Eigen::Vecto
     for (std::size_t k = 0; k < cells.size(); ++k) {
         const double scatter =
             data.noise.col(cells[k]).squaredNorm() / static_cast<double>(data.noise.rows());
-        const double variance = scatter + finest[static_cast<Eigen::Index>(k)];
+        const double variance = scatter + finest[k];
         size += (gap[cells[k]] * gap[cells[k]] - both * scatter) / variance;
     }
     return size;
@@ -125,8 +125,8 @@ PartialFit stepped(const GapData& data, const std::vector<std::size_t>& candidat
     fit.nuisances = data.in_range(fit.nuisances + step.head(nuisances));
     for (std::size_t k = 0; k < candidates.size(); ++k) {
         const Candidate& candidate = data.candidates[candidates[k]];
-        fit.amplitudes[k] = std::clamp(fit.amplitudes[k] + step[nuisances + static_cast<Eigen::Index>(k)],
-                                       candidate.low, candidate.high);
+        fit.amplitudes[k] =
+            std::clamp(fit.amplitudes[k] + step[nuisances + k], candidate.low, candidate.high);
     }
     return fit;
 }
@@ -143,7 +143,7 @@ PartialFit refit_part(const GapData& data, const CellChoice& cells, const Eigen:
     std::vector<FreeParameter> free = data.free;
     Eigen::VectorXd without_nuisances = left;
     for (std::size_t k = 0; k < data.free.size(); ++k)
-        without_nuisances += at.nuisances[static_cast<Eigen::Index>(k)] * data.free[k].direction;
+        without_nuisances += at.nuisances[k] * data.free[k].direction;
     for (std::size_t k = 0; k < candidates.size(); ++k) {
         const Candidate& candidate = data.candidates[candidates[k]];
         free.push_back({candidate.signature->slope(at.amplitudes[k]), candidate.high - candidate.low});

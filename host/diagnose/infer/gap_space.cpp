@@ -41,8 +41,7 @@ std::vector<Eigen::Index> usable_cells(const Eigen::MatrixXd& baseline,
 Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all) {
     const Eigen::Index each = cells_each(all);
     Eigen::ArrayXd list(static_cast<Eigen::Index>(cells.size()));
-    for (std::size_t k = 0; k < cells.size(); ++k)
-        list[static_cast<Eigen::Index>(k)] = observables()[cells[k] / each].resolution;
+    for (std::size_t k = 0; k < cells.size(); ++k) list[k] = observables()[cells[k] / each].resolution;
     return list;
 }
 
@@ -60,14 +59,13 @@ Eigen::ArrayXd moderated(const Eigen::ArrayXd& variance, const CellChoice& cells
     const double n = static_cast<double>(noise.rows());
     std::map<Eigen::Index, std::pair<double, int>> sum;
     for (std::size_t k = 0; k < cells.size(); ++k) {
-        sum[cells[k] / each].first += variance[static_cast<Eigen::Index>(k)];
+        sum[cells[k] / each].first += variance[k];
         ++sum[cells[k] / each].second;
     }
     Eigen::ArrayXd result(variance.size());
     for (std::size_t k = 0; k < cells.size(); ++k) {
         const auto& [total, count] = sum[cells[k] / each];
-        const auto i = static_cast<Eigen::Index>(k);
-        result[i] = (n * variance[i] + replicates_more * total / count) / (n + replicates_more);
+        result[k] = (n * variance[k] + replicates_more * total / count) / (n + replicates_more);
     }
     return result;
 }
@@ -85,19 +83,16 @@ GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& 
     directions_.resize(static_cast<Eigen::Index>(cells.size()), static_cast<Eigen::Index>(free.size()));
     Eigen::MatrixXd total = covariance;
     for (std::size_t k = 0; k < free.size(); ++k) {
-        const auto column = static_cast<Eigen::Index>(k);
-        directions_.col(column) = pick(free[k].direction, cells);
+        directions_.col(k) = pick(free[k].direction, cells);
         total.noalias() +=
-            free[k].sigma * free[k].sigma * directions_.col(column) * directions_.col(column).transpose();
+            free[k].sigma * free[k].sigma * directions_.col(k) * directions_.col(k).transpose();
     }
     noise_.compute(covariance);
     total_.compute(total);
     if (free.empty())
         return;  // Eigen's solvers take the address of the first element, which does not exist here
     Eigen::MatrixXd precision = directions_.transpose() * noise_.solve(directions_);
-    for (std::size_t k = 0; k < free.size(); ++k)
-        precision(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) +=
-            1 / (free[k].sigma * free[k].sigma);
+    for (std::size_t k = 0; k < free.size(); ++k) precision(k, k) += 1 / (free[k].sigma * free[k].sigma);
     posterior_ = precision.llt().solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()));
 }
 

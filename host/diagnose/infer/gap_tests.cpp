@@ -139,9 +139,8 @@ std::vector<Eigen::VectorXd> observable_patterns(const GapSpace& space, Eigen::I
         if (end - first < fewest) continue;
         Eigen::VectorXd mean = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cells.size())), trend = mean;
         for (std::size_t k = first; k < end; ++k) {
-            const auto cell = static_cast<Eigen::Index>(k);
-            mean[cell] = 1 / (space.sigma()[cell] * space.sigma()[cell]);
-            trend[cell] = mean[cell] * passage(cells[k] % each, each);
+            mean[k] = 1 / (space.sigma()[k] * space.sigma()[k]);
+            trend[k] = mean[k] * passage(cells[k] % each, each);
         }
         trend -= trend.sum() / mean.sum() * mean;
         patterns.push_back(mean);

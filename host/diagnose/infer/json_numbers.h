@@ -48,7 +48,7 @@ struct adl_serializer<Eigen::VectorXd> {
     static void from_json(const json& j, Eigen::VectorXd& values) {
         values.resize(static_cast<Eigen::Index>(j.size()));
         for (std::size_t i = 0; i < j.size(); ++i)
-            values[static_cast<Eigen::Index>(i)] = j[i].is_null() ? mcdem::not_available : j[i].get<double>();
+            values[i] = j[i].is_null() ? mcdem::not_available : j[i].get<double>();
     }
 };
 

@@ -81,8 +81,7 @@ Proposal best_pair(const GapSpace& space, const GapData& data, const std::vector
 /// Cost of the nuisances of the runs in log likelihood, from their priors.
 double prior_cost(const Eigen::VectorXd& nuisances, const std::vector<FreeParameter>& free) {
     double cost = 0;
-    for (std::size_t k = 0; k < free.size(); ++k)
-        cost += 0.5 * std::pow(nuisances[static_cast<Eigen::Index>(k)] / free[k].sigma, 2);
+    for (std::size_t k = 0; k < free.size(); ++k) cost += 0.5 * std::pow(nuisances[k] / free[k].sigma, 2);
     return cost;
 }
 

@@ -70,8 +70,7 @@ std::vector<std::string> not_measured(const Eigen::VectorXd& observed, const Gri
     std::set<Needs> seen;
     const auto cells = cells_of(grid);
     for (std::size_t k = 0; k < cells.size(); ++k)
-        if (std::isfinite(observed[static_cast<Eigen::Index>(k)]))
-            seen.insert(observables()[cells[k].observable].needs);
+        if (std::isfinite(observed[k])) seen.insert(observables()[cells[k].observable].needs);
     std::vector<std::string> texts;
     if (!seen.count(Needs::contacts))
         texts.push_back(

@@ -13,7 +13,6 @@ namespace mcdem::inline report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using NamedPairs = std::vector<std::pair<std::string, std::array<double, 2>>>;
 
 /// An object whose members are read or written by the same list (`describe`). null represents NaN, infinity
 /// (written so by the library) and unknown values.
@@ -51,7 +50,7 @@ public:
         if (reads_) metres = {lengths[0] * mm, lengths[1] * mm};
     }
     /// Pairs as an object, in this order.
-    void object(const char* key, NamedPairs& pairs) {
+    void object(const char* key, std::vector<std::pair<std::string, std::array<double, 2>>>& pairs) {
         Json& json = place(key);
         if (!reads_) json = Json::object();
         if (reads_)
@@ -152,9 +151,7 @@ void describe(Members& io, GapReduction& gap) {
     io("fraction", gap.fraction);
     io("interval", gap.interval);
     io("placebo", gap.placebo);
-    NamedPairs metrics = metrics_in_order(gap);
-    io.object("metrics", metrics);
-    gap.metrics.insert(metrics.begin(), metrics.end());
+    io.object("metrics", gap.metrics);
     io("confirmed", gap.confirmed);
     io.millimetres("fitted_displacement_mm", gap.fitted_displacement);
     io("top_force", gap.top_force);

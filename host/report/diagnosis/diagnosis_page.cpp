@@ -137,7 +137,7 @@ TextTable table_of_gap_reduction(const Diagnosis& diagnosis) {
     table.columns = {{"", Align::left}, {"before"}, {"after"}, {"perfect"}};
     add_change(table, "gap, noise subtracted", {gap_reduction.before, gap_reduction.after}, "0");
     table.notes = {"gap: sum of squared differences in held-out data, in standard deviations of the noise"};
-    for (const auto& [name, values] : metrics_in_order(gap_reduction)) {
+    for (const auto& [name, values] : gap_reduction.metrics) {
         add_change(table, name == "errf" ? "errf [N]" : name, values, perfect(name));
         if (const auto meaning = meaning_of(name); !meaning.empty())
             table.notes.push_back(name + ": " + meaning);

@@ -193,18 +193,6 @@ std::string added_words(const Diagnosis& diagnosis) {
     return words.empty() ? "the effect" : listed(words);
 }
 
-std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
-    const GapReduction& gap_reduction) {
-    std::vector<std::pair<std::string, std::array<double, 2>>> metrics(gap_reduction.metrics.begin(),
-                                                                       gap_reduction.metrics.end());
-    const auto place = [](const auto& metric) {
-        static constexpr std::array<std::string_view, 4> order{"Rtop", "errf", "errZ", "bhat"};
-        return std::ranges::find(order, metric.first) - order.begin();
-    };
-    std::ranges::stable_sort(metrics, [&](const auto& a, const auto& b) { return place(a) < place(b); });
-    return metrics;
-}
-
 std::string library_words(const Diagnosis& diagnosis) {
     const auto count = diagnosis.detection_limits.size();
     if (count == 0) return "no effect could be tested";

@@ -49,10 +49,6 @@ std::vector<Cause> added_causes(const Diagnosis& diagnosis);
 /// Their names: "adhesion", "adhesion and friction".
 std::string added_words(const Diagnosis& diagnosis);
 
-/// The metrics in the paper's order, then others: name, before and after.
-std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
-    const GapReduction& gap_reduction);
-
 /// "18 effects were tested".
 std::string library_words(const Diagnosis& diagnosis);
 

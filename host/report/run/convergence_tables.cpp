@@ -27,10 +27,9 @@ std::string name_of(const Convergence& convergence, std::size_t cell) {
 /// "0.55 +- 0.08", ".. *" beyond the limit.
 std::string error_text(const Convergence& convergence, const CauseErrors& cause, int cell) {
     if (cell < 0) return "-";
-    const auto c = static_cast<std::size_t>(cell);
-    return fmt::format("{:+.2f} +- {:.2f} {}{}", shown(convergence, c, cause.cells[c].value),
-                       shown(convergence, c, cause.cells[c].standard_error), unit(convergence, c),
-                       convergence.is_beyond(cause, c) ? " *" : "  ");
+    return fmt::format("{:+.2f} +- {:.2f} {}{}", shown(convergence, cell, cause.cells[cell].value),
+                       shown(convergence, cell, cause.cells[cell].standard_error), unit(convergence, cell),
+                       convergence.is_beyond(cause, cell) ? " *" : "  ");
 }
 
 bool has_any(const Convergence& convergence, int observable) {
@@ -89,12 +88,11 @@ std::string words_of(const Convergence& convergence, const CauseErrors& cause) {
 
 nlohmann::ordered_json json_of(const Convergence& convergence, const CauseErrors& cause, std::size_t cell) {
     const CellError& error = cause.cells[cell];
-    const auto c = static_cast<Eigen::Index>(cell);
     return {{"observable", name_of(convergence, cell)},
             {"phase", name(convergence.cells[cell].phase)},
             {"displacement_mm", 1e3 * convergence.cells[cell].displacement},
-            {"mean", convergence.mean[c]},
-            {"standard_deviation", convergence.deviation[c]},
+            {"mean", convergence.mean[cell]},
+            {"standard_deviation", convergence.deviation[cell]},
             {"error", error.value},
             {"standard_error", error.standard_error},
             {"follows_order", error.follows_order},
@@ -173,11 +171,11 @@ nlohmann::ordered_json convergence_figure_values(const Convergence& convergence)
         Json row{{"observable", name}, {"words", words_of(name)}, {"errors", Json::array()}};
         for (const CauseErrors& cause : convergence.causes) {
             const int cell = convergence.worst_cell(cause, q);
-            const auto c = static_cast<std::size_t>(cell);
             row["errors"].push_back(
-                cell < 0 ? Json()
-                         : Json{{"over_limit", cause.cells[c].value / convergence.limit(c)},
-                                {"standard_error", cause.cells[c].standard_error / convergence.limit(c)}});
+                cell < 0
+                    ? Json()
+                    : Json{{"over_limit", cause.cells[cell].value / convergence.limit(cell)},
+                           {"standard_error", cause.cells[cell].standard_error / convergence.limit(cell)}});
         }
         rows.push_back(row);
     }

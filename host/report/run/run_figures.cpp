@@ -193,13 +193,7 @@ std::vector<LevelMean> coordination_means(const Cast& cast, const Series& series
     if (const Coordination counted(series.levels, series.setting.replicas);
         !cast.is_reference(series) && counted.known())
         z = counted.at_threshold(threshold_of(series, options).value_or(0));
-    std::vector<LevelMean> means;
-    for (std::size_t l = 0; l < series.levels.size(); ++l) {
-        const Eigen::ArrayXd column = z.col(l);
-        means.push_back({series.levels[l].phase, series.levels[l].displacement,
-                         mean_over_replicas({column.data(), static_cast<std::size_t>(column.size())})});
-    }
-    return means;
+    return level_means(series.levels, z);
 }
 
 RunFigure coordination_figure(const Cast& cast, const FigureOptions& options) {
