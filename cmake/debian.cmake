@@ -29,5 +29,5 @@ set(next ${Python3_VERSION_MAJOR}.${next})  # an extension module suits one vers
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-mcdem)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-  "python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}), python3 (<< ${next}), python3-numpy, python3-h5py, pocl-opencl-icd | opencl-icd")
+  "python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}), python3 (<< ${next}), python3-numpy, pocl-opencl-icd | opencl-icd")
 include(CPack)

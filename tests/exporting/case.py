@@ -6,7 +6,8 @@ import unittest
 import synthetic
 from synthetic import h5py
 
-from mcdem import export
+from mcdem import exporting
+from mcdem.exporting import vtk, xyz  # noqa: F401  for the tests
 
 FIRST, SECOND = "replica_00000_mc_dem_packing_0", "replica_00001_mc_dem_packing_1"
 
@@ -17,19 +18,21 @@ class Case(unittest.TestCase):
         self.addCleanup(kept.cleanup)
         self.folder = pathlib.Path(kept.name)
 
-    def export(self, run, out="view", **how):
-        """Writes the run and exports it; returns the number of files."""
-        synthetic.write_run(self.folder / "run.h5", run)
-        return export(self.folder / "run.h5", self.folder / out, **how)
+        self.view = self.folder / "view"
+        self.view.mkdir()
 
-    def refused(self, words, run, kind=ValueError, **how):
-        with self.assertRaisesRegex(kind, words):
-            export(self.folder / run, self.folder / "view", **(how or {"vtk": True}))
+    def export(self, run, form, replicas=(), scans=(), parts=()):
+        """Writes the run, in files of `parts` scans if given, and exports it; returns the number of files."""
+        files, first = [], 0
+        for number, count in enumerate(parts or [len(run[0].scans)]):
+            files.append(synthetic.write_run(self.folder / f"{number}.h5", run, first, first + count))
+            first += count
+        return exporting.export(files, self.view, [form], replicas, scans)
 
     def grid(self, name, replica=FIRST, scan=0):
         """Tables of an exported file by their names in it."""
         tables = {}
-        with h5py.File(self.folder / "view" / replica / f"{name}_{scan:06}.hdf") as file:
+        with h5py.File(self.view / replica / f"{name}_{scan:06}.hdf") as file:
             file["VTKHDF"].visititems(lambda path, found: tables.update({path: found[:]} if isinstance(found, h5py.Dataset) else {}))
         return tables
 

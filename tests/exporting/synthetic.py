@@ -1,5 +1,4 @@
 """A result file with all kinds of data (host/io/README.md), written by h5py."""
-import hashlib
 import sys
 
 try:
@@ -72,7 +71,7 @@ def vectors(group, scans, what):
     group[f"{what}/step"] = np.array(seen, int)
 
 
-def write_run(file, run, first=0, last=None, digests=True):
+def write_run(file, run, first=0, last=None):
     """Scans first .. last - 1 of every replica."""
     with h5py.File(file, "w") as out:
         out.create_group("parameters").attrs.update(format=1, replicas=len(run))
@@ -90,11 +89,4 @@ def write_run(file, run, first=0, last=None, digests=True):
                 vectors(particles, scans, what)
             out[f"contacts/{name}/contact"] = np.concatenate([scan.contacts for scan in scans])
             out[f"contacts/{name}/offset"] = np.cumsum([0, *(len(scan.contacts) for scan in scans)])
-        if digests:
-            table = out[f"observables/{name}"]
-            words = ",".join(f"{field}:{word}" for field, word in [
-                ("frame", "i4"), ("cycle", "i4"), ("phase", "i1"), ("settled", "i1"), ("time", "f8"), ("plate_z", "f8"),
-                ("wall_force", "(6,3)f8"), ("coordination_number", "f8"), ("strain", "(6)f8")])
-            digest = hashlib.sha256(table[()].tobytes() + f"{{{words}}} {len(table)}".encode()).hexdigest()
-            out["digests"] = texts([[f"/observables/{name}", digest]])
     return file

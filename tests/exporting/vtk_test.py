@@ -5,9 +5,7 @@ import unittest
 import case
 import numpy as np
 from case import FIRST, SECOND
-from synthetic import FLOOR, GRAINS, contacts_of, h5py, make_run, write_run
-
-from mcdem import export
+from synthetic import FLOOR, GRAINS, contacts_of, h5py, make_run
 
 try:
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -26,7 +24,7 @@ class Vtk(case.Case):
 
     def read(self, name, replica=SECOND, scan=0):
         reader = vtkHDFReader()
-        file = str(self.folder / "view" / replica / f"{name}_{scan:06}.hdf")
+        file = str(self.view / replica / f"{name}_{scan:06}.hdf")
         self.assertTrue(reader.CanReadFile(file))
         reader.SetFileName(file)
         reader.Update()
@@ -36,7 +34,7 @@ class Vtk(case.Case):
         return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
 
     def test_grains(self):
-        self.assertEqual(self.export(make_run(2, 3), vtk=True), 24)
+        self.assertEqual(self.export(make_run(2, 3), case.vtk), 24)
         grid = self.read("grains", scan=2)
         self.assertEqual((grid.GetNumberOfPoints(), grid.GetNumberOfCells()), (GRAINS, GRAINS))
         points = self.arrays(grid.GetPointData())
@@ -48,7 +46,7 @@ class Vtk(case.Case):
 
     def test_contacts_forces_and_walls(self):
         run = make_run(2, 3)
-        self.export(run, vtk=True)
+        self.export(run, case.vtk)
         scan = run[1].scans[2]
         contacts, plate_z = scan.contacts, scan.row["plate_z"]
         grid = self.read("contacts", scan=2)
@@ -68,7 +66,7 @@ class Vtk(case.Case):
     def test_a_scan_without_contacts(self):
         run = make_run()
         run[0].scans[0].contacts = contacts_of()
-        self.assertEqual(self.export(run, vtk=True), 4)
+        self.assertEqual(self.export(run, case.vtk), 4)
         self.assertEqual(self.read("grains", FIRST).GetNumberOfPoints(), GRAINS)
         self.assertEqual(set(self.points("grains")), {"grain", "diameter", "displacement", "displacement_since_last_scan", "rotation",
                                                       "rotation_since_last_scan"})
@@ -81,7 +79,7 @@ class Grains(case.Case):
         scans = run[0].scans
         for number, scan in enumerate(scans):
             scan.position = scans[0].position + [0.01 * number ** 2, 0, -0.02 * number]
-        self.assertEqual(self.export(run, vtk=True, scans=[2]), 4)
+        self.assertEqual(self.export(run, case.vtk, scans=[2]), 4)
         points = self.points("grains", scan=2)
         self.assertTrue(close(points["displacement"], [0.04, 0, -0.04]))
         self.assertTrue(close(points["displacement_since_last_scan"], [0.03, 0, -0.02]))
@@ -93,14 +91,14 @@ class Grains(case.Case):
         before[1], now[1] = [np.pi / 2, 0, 0], np.array([1, 1, -1]) * 2 * np.pi / 3 / 3 ** 0.5  # a quarter turn about x, then about y
         before[2], now[2] = [0, 0, 3.0], [0, 0, -3.0]
         before[3], now[3] = [0.1, 0.2, 0.3], [0.1, 0.2, 0.3]
-        self.export(run, vtk=True, scans=[2])
+        self.export(run, case.vtk, scans=[2])
         points = self.points("grains", scan=2)
         self.assertTrue(close(points["rotation"], now))
         self.assertTrue(close(points["rotation_since_last_scan"][:4],
                               [[0.3, 0, 0], [0, np.pi / 2, 0], [0, 0, 2 * np.pi - 6], [0, 0, 0]]))
         for scan in run[0].scans:
             scan.rotation = None
-        self.export(run, vtk=True)
+        self.export(run, case.vtk)
         self.assertFalse({"rotation", "rotation_since_last_scan"} & set(self.points("grains", scan=2)))
 
     def test_displacements_in_a_cell_are_relative_to_its_own_motion(self):
@@ -115,7 +113,7 @@ class Grains(case.Case):
             scan.position = place @ motion.T + more
             for axis in (2, 1, 0):  # into the cell
                 scan.position -= np.floor(scan.position[:, axis] / (0.1 * motion[axis, axis]))[:, None] * 0.1 * motion[:, axis]
-        self.export(run, vtk=True)
+        self.export(run, case.vtk)
         self.assertTrue(close(self.points("grains", scan=1)["displacement"], moved))
         self.assertEqual(self.grid("walls", scan=1)["FieldData/shear_xz"], [0.9])
 
@@ -125,7 +123,7 @@ class Grains(case.Case):
         run[0].shape, run[0].edges = shape, [0.5, 0.4, 0.5]
         run[0].diameter[:] = 0.2
         run[0].scans[0].position[:2], run[0].scans[0].contacts = position, contacts
-        self.export(run, vtk=True)
+        self.export(run, case.vtk)
         return self.points("grains"), self.points("forces")
 
     def test_stress_is_the_sum_over_contacts_per_volume(self):
@@ -147,12 +145,12 @@ class Grains(case.Case):
         run = make_run()
         run[0].scans[0].contacts = contacts_of()
         run[0].scans[0].row["coordination_number"] = 0
-        self.export(run, vtk=True)
+        self.export(run, case.vtk)
         self.assertTrue((self.points("grains")["stress"] == 0).all())
 
     def test_the_type_of_grid_is_ascii_as_paraview_requires(self):
-        self.export(make_run(), vtk=True)
-        with h5py.File(self.folder / "view" / FIRST / "grains_000000.hdf") as file:
+        self.export(make_run(), case.vtk)
+        with h5py.File(self.view / FIRST / "grains_000000.hdf") as file:
             kind = h5py.h5a.open(file["VTKHDF"].id, b"Type").get_type()
             self.assertEqual(kind.get_cset(), h5py.h5t.CSET_ASCII)
             self.assertFalse(kind.is_variable_str())
@@ -165,7 +163,7 @@ class ContactsAndWalls(case.Case):
             replica.shape, replica.edges = shape, [0.1, 0.1, 0.06]
             replica.scans[0].position[:2] = [0.08, 0.09, 0.03], [0.01, 0.015, 0.03]
             replica.scans[0].contacts = contacts_of((0, partner, [0.08, 0.09, 0.03], [0, 0, 1], 0))
-        self.export(run, vtk=True)
+        self.export(run, case.vtk)
         self.assertTrue(close(self.grid("contacts")["Points"], [[0.08, 0.09, 0.03], [0.05 + 0.05 * 0.6, 0.05 + 0.05 * 0.8, 0.03]]))
         self.assertTrue(close(self.grid("contacts", SECOND)["Points"][1], [0.11, 0.115, 0.03]))
 
@@ -174,12 +172,12 @@ class ContactsAndWalls(case.Case):
         replica, scan = run[0], run[0].scans[0]
         replica.diameter, scan.position, scan.rotation = replica.diameter[:1], scan.position[:1], scan.rotation[:1]
         scan.contacts = contacts_of((0, -5, [0, 0, 0], [0, 0, 1], 0), (0, -6, [0, 0, 0.02], [0, 0, -1], 0))
-        self.export(run, vtk=True)
+        self.export(run, case.vtk)
         self.assertTrue(close(self.grid("contacts")["Points"][1::2, 2], [0, scan.row["plate_z"]]))
 
     def test_forces_are_at_the_contacts(self):
         run = make_run()
-        self.export(run, vtk=True)
+        self.export(run, case.vtk)
         self.assertTrue((self.grid("forces")["Points"] == run[0].scans[0].contacts["point"]).all())
         self.assertTrue((self.points("forces")["force"] == run[0].scans[0].contacts["force"]).all())
 
@@ -188,7 +186,7 @@ class ContactsAndWalls(case.Case):
         run = make_run()
         run[0].shape, run[0].edges = shape, [0.1, 0.1, 0.1 if shape == "cell" else 0.09]
         run[0].scans[0].row["plate_z"], run[0].scans[0].row["strain"] = 0.08, strain
-        self.export(run, vtk=True)
+        self.export(run, case.vtk)
         return self.grid("walls")
 
     def test_walls_are_surfaces_with_their_forces(self):
@@ -213,30 +211,25 @@ class ContactsAndWalls(case.Case):
 
 class Files(case.Case):
     def test_those_of_an_earlier_export_do_not_remain(self):
-        self.export(make_run(scans=4), vtk=True)
-        self.export(make_run(scans=2), vtk=True)
-        there = self.folder / "view" / FIRST
+        self.export(make_run(scans=4), case.vtk)
+        self.export(make_run(scans=2), case.vtk)
+        there = self.view / FIRST
         self.assertEqual(len(list(there.glob("*.hdf"))), 8)
         for name in ("mine.hdf", "grains_filtered.hdf", "grains_1.vtu"):
             pathlib.Path(there / name).write_text("something else")
-            self.export(make_run(scans=2), vtk=True)
+            self.export(make_run(scans=2), case.vtk)
             self.assertTrue((there / name).exists(), name)
 
     def test_only_those_of_selected_scans_are_written(self):
-        self.assertEqual(self.export(make_run(2, 4), vtk=True, replicas=[1], scans=[1, 3]), 8)
-        self.assertFalse((self.folder / "view" / FIRST).exists())
-        self.assertTrue((self.folder / "view" / SECOND / "contacts_000003.hdf").exists())
-        self.refused("--replica: must be one of 0 to 1, got 2", "run.h5", vtk=True, replicas=[2])
-        self.refused("--scan: must be among .*, got 7, 8", "run.h5", vtk=True, scans=[7, 8])
+        self.assertEqual(self.export(make_run(2, 4), case.vtk, replicas=[1], scans=[1, 3]), 8)
+        self.assertFalse((self.view / FIRST).exists())
+        self.assertTrue((self.view / SECOND / "contacts_000003.hdf").exists())
 
     def test_an_unfinished_run_with_scans_without_positions(self):
         run = make_run(scans=4)
         run[0].scans[1].position = run[0].scans[1].rotation = None
-        (self.folder / "out").mkdir()
-        for number in (0, 1):
-            write_run(self.folder / f"out/segment-{number:06}.h5", run, 2 * number, 2 * number + 2)
-        self.assertEqual(export(self.folder / "out", self.folder / "view", vtk=True), 12)
-        self.assertFalse((self.folder / "view" / FIRST / "grains_000001.hdf").exists())
+        self.assertEqual(self.export(run, case.vtk, parts=[2, 2]), 12)
+        self.assertFalse((self.view / FIRST / "grains_000001.hdf").exists())
         moved = run[0].scans[3].position - run[0].scans[2].position
         self.assertTrue(close(self.points("grains", scan=3)["displacement_since_last_scan"], moved))
 

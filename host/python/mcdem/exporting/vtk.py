@@ -5,7 +5,7 @@ import re
 import h5py
 import numpy as np
 
-from ..files import expect_replaceable, remove_temporaries, write_whole
+from ..files import expect_replaceable, write_whole
 from .run_file import PERIODIC, PLATE, Contacts
 
 GUIDE_NAME = "README.txt"
@@ -58,9 +58,7 @@ def export_replica(replica, folder, is_chosen):
             continue
         first, last = first or scan, last or scan
         if is_chosen(scan):
-            if not written:
-                folder.mkdir(exist_ok=True)
-                remove_temporaries(folder)
+            folder.mkdir(exist_ok=True)
             contacts = Contacts(scan)
             grids = {"grains": grains_grid(scan, contacts, first, last), "contacts": contacts_grid(scan, contacts),
                      "forces": forces_grid(contacts), "walls": walls_grid(scan)}
@@ -94,7 +92,8 @@ def grid_bytes(scan, points, sizes, types, point_data, cell_data):
                   "FieldData": {name: [float(value)] for name, value in fields.items()}}
         for group in groups:
             grid.create_group(group)
-        for name, values in [*tables.items(), *((f"{group}/{name}", values) for group in groups for name, values in groups[group].items())]:
+            tables |= {f"{group}/{name}": values for name, values in groups[group].items()}
+        for name, values in tables.items():
             values = np.asarray(values)
             grid.create_dataset(name, data=values, maxshape=(None, *values.shape[1:]), compression="gzip", compression_opts=1,
                                 shuffle=True, fletcher32=True)

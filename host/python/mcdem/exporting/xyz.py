@@ -44,7 +44,7 @@ def export_replica(replica, folder, is_chosen):
     if first is None:
         return 0
     xyz, dump = (folder / (replica.file_name + ending) for ending in (".xyz", ".contacts.dump"))
-    expect_replaceable(xyz, "an export", b"", f":{PROPERTIES.partition(':')[2]} ".encode())
+    expect_replaceable(xyz, "an export", b"", PROPERTIES.encode())
     expect_replaceable(dump, "an export", b"ITEM: TIMESTEP\n", ENTRIES.encode())
     with new_file(xyz) as grains_out, new_file(dump) as contacts_out:
         for scan in itertools.chain([first], scans):
