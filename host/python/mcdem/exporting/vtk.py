@@ -42,7 +42,7 @@ axis times angle in radians. Without output.contacts grains have no coordination
 The replicas here, with the scene keys that are not the same in all of the run:
 """
 
-VERTEX, LINE, POLYGON = 1, 3, 7  # cell types of VTK
+CELL_TYPES = np.array([1, 3, 7], np.uint8)  # of VTK: vertex, line, polygon
 CURVED_WALL, FLOOR = 0, 4  # numbers of walls; PLATE is another
 SIDES = 64  # of the polygon that approximates a circle
 
@@ -75,14 +75,14 @@ def export_replica(replica, folder, is_chosen):
     return len(written)
 
 
-def grid_bytes(scan, points, sizes, types, point_data, cell_data):
-    """A VTKHDF file of cells with `sizes` points each, in sequence. The properties of the scan are field data."""
+def grid_bytes(scan, points, sizes, point_data, cell_data):
+    """A VTKHDF file of cells with `sizes` points each, in sequence: vertices, lines and polygons. The properties of the scan are field data."""
     fields = {"frame": scan.frame, "time": scan.time, "plate_z": scan.plate_z, "top_force": scan.top_force}
     if scan.replica.is_cell:
         fields |= zip(("strain_x", "strain_y", "strain_z", "shear_xy", "shear_xz", "shear_yz"), scan.strain)
     tables = {"NumberOfPoints": [len(points)], "NumberOfCells": [len(sizes)], "NumberOfConnectivityIds": [len(points)],
               "Points": points, "Connectivity": np.arange(len(points)), "Offsets": np.cumsum([0, *sizes]),
-              "Types": np.array(types, np.uint8)}
+              "Types": CELL_TYPES[np.clip(sizes, 1, 3).astype(int) - 1]}
     image = io.BytesIO()  # written to disk as a whole, because HDF5 does not recover from a full disk
     with h5py.File(image, "w", libver="v110") as file:
         grid = file.create_group("VTKHDF")
@@ -136,7 +136,7 @@ def grains_grid(scan, contacts, first, last):
         data["rotation"] = scan.rotation
     if scan.rotation is not None and last.rotation is not None:
         data["rotation_since_last_scan"] = rotation_since(scan, last)
-    return scan.position, [1] * count, [VERTEX] * count, data, {}
+    return scan.position, [1] * count, data, {}
 
 
 def contact_data(contacts):
@@ -169,13 +169,13 @@ def contacts_grid(scan, contacts):
     end[at_wall] = wall_foot(scan, -1 - contacts.partner[at_wall], start[at_wall])
     count = len(start)
     ends = {"force": contacts.force.repeat(2, axis=0), "force_magnitude": contacts.magnitude.repeat(2)}
-    return np.stack([start, end], axis=1).reshape(-1, 3), [2] * count, [LINE] * count, ends, contact_data(contacts)
+    return np.stack([start, end], axis=1).reshape(-1, 3), [2] * count, ends, contact_data(contacts)
 
 
 def forces_grid(contacts):
     """The same contacts as points at their positions."""
     count = len(contacts.point)
-    return contacts.point, [1] * count, [VERTEX] * count, contact_data(contacts), {}
+    return contacts.point, [1] * count, contact_data(contacts), {}
 
 
 def walls_grid(scan):
@@ -202,4 +202,4 @@ def walls_grid(scan):
         cells += [(FLOOR, corners), (PLATE, corners + [0, 0, scan.plate_z])]
     walls, faces = zip(*cells)
     data = {"wall": np.array(walls, np.int32), "force": [scan.wall_force[wall] if wall >= 0 else np.zeros(3) for wall in walls]}
-    return np.concatenate(faces), [len(face) for face in faces], [POLYGON if len(face) > 2 else LINE for face in faces], {}, data
+    return np.concatenate(faces), [len(face) for face in faces], {}, data
