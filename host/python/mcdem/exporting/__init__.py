@@ -7,7 +7,8 @@ def export(files, folder, formats, replicas=(), scans=()):
     """Exports a run, whose files have been checked, into a folder (pathlib.Path) by modules of this package: vtk, xyz.
     `replicas`, `scans`: their numbers; all where empty. Returns the number of files."""
     run = read_replicas(files)
-    varying = sorted({key for replica in run for key in replica.parameters if len({one.parameters.get(key, "") for one in run}) > 1})
+    keys = sorted(set().union(*(replica.parameters for replica in run)))
+    varying = [key for key in keys if len({replica.parameters.get(key, "") for replica in run}) > 1]
     chosen = [replica for replica in run if not replicas or replica.number in replicas]
     listed = "".join(replica.file_name + "".join(f"  {key} = {replica.parameters.get(key, '')}" for key in varying) + "\n"
                      for replica in chosen)
