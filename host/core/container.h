@@ -117,16 +117,6 @@ inline Vec3 towards_wall(const Box& box, Wall wall, const Vec3& point) {
     return (number % 2 ? 1 : -1) * Vec3::Unit(number / 2);
 }
 
-/// Foot of the perpendicular on an existing wall; the plate is level at plate_z.
-inline Vec3 wall_foot(const Box& box, Wall wall, double plate_z, const Vec3& point) {
-    if (is_cylinder(box) && wall == curved_wall)
-        return point + (cylinder_radius(box) - from_axis(box, point).norm()) * towards_wall(box, wall, point);
-    const double places[wall_count] = {0, box.size_x, 0, box.size_y, 0, plate_z};
-    Vec3 foot = point;
-    foot[static_cast<int>(wall) / 2] = places[static_cast<int>(wall)];
-    return foot;
-}
-
 /// R* of a sphere at an existing wall [m]. Inside a cylinder 1/R* = sqrt(1/R (1/R - 1/R_c)), the
 /// geometric mean of both directions (Johnson 1985, section 4.2).
 inline double reduced_radius(const Box& box, Wall wall, double radius) {
@@ -134,11 +124,12 @@ inline double reduced_radius(const Box& box, Wall wall, double radius) {
     return radius / std::sqrt(1 - radius / cylinder_radius(box));
 }
 
-/// Distance of a point from a wall, negative outside [m].
+/// Distance of a point from an existing wall, negative outside; the plate is level at plate_z [m].
 inline double wall_distance(const Box& box, Wall wall, double plate_z, const Vec3& point) {
     if (is_cylinder(box) && wall == curved_wall) return cylinder_radius(box) - from_axis(box, point).norm();
+    const double places[wall_count] = {0, box.size_x, 0, box.size_y, 0, plate_z};
     const int number = static_cast<int>(wall);
-    const double place = wall_foot(box, wall, plate_z, point)[number / 2], coordinate = point[number / 2];
+    const double place = places[number], coordinate = point[number / 2];
     return number % 2 ? place - coordinate : coordinate - place;
 }
 

@@ -31,14 +31,8 @@ constexpr std::array marks{
     Mark{FileKind::figure, "a figure of mcdem", "", "mcdem figure"},
     Mark{FileKind::figure_values, "the values of figures", "{\n \"mcdem_figures\"", ""},
     Mark{FileKind::job_script, "a job script of mcdem", "#!/bin/bash\n# Written by mcdem", ""},
-    Mark{FileKind::guide, "the guide to an export", "", ""},
-    Mark{FileKind::vtk, "an export", "\x89HDF\r\n", "VTKHDF"},
-    Mark{FileKind::xyz, "an export", "", ":S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:"},
-    Mark{FileKind::dump, "an export", "ITEM: TIMESTEP\n", "ITEM: ENTRIES grain partner force_magnitude "},
     Mark{FileKind::manual, "a manual page of mcdem", ".TH MCDEM", ""},
 };
-constexpr std::array<std::string_view, 2> guides{"Grains and contacts for ParaView\n====",
-                                                 "replica_*.xyz            grains, one frame a scan"};
 constexpr int head_size = 1 << 16, largest_figure = 1 << 24;  ///< a PDF names its producer at the end
 
 const Mark& mark_of(FileKind kind) {
@@ -48,8 +42,6 @@ const Mark& mark_of(FileKind kind) {
 }
 
 bool is_of_kind(std::string_view head, FileKind kind) {
-    if (kind == FileKind::guide)
-        return std::ranges::any_of(guides, [&](std::string_view guide) { return head.starts_with(guide); });
     const Mark& mark = mark_of(kind);
     return head.starts_with(mark.begins) && head.find(mark.holds) != head.npos;
 }

@@ -22,10 +22,6 @@ enum class FileKind {
     score_page,
     figure,
     figure_values,
-    guide,
-    vtk,
-    xyz,
-    dump,
     manual,
     job_script
 };

@@ -26,13 +26,6 @@ std::vector<Mat3> moments(const Box& box, const Scan& scan) {
     return sums;
 }
 
-/// Unit vector from the grain of a contact to its partner.
-Vec3 direction(const Box& box, const Scan& scan, const Contact& contact) {
-    const Vec3& centre = scan.position[contact.grain];
-    const Vec3& other = is_wall(contact.partner) ? contact.point : scan.position[contact.partner];
-    return apart(box, centre, other).normalized();
-}
-
 }  // namespace
 
 std::vector<Mat3> grain_stress(const Box& box, const std::vector<double>& diameter, const Scan& scan) {
@@ -74,15 +67,11 @@ Mat3 packing_fabric(const Box& box, const Scan& scan) {
     const Box now = deformed(box, scan.strain);
     for (const Contact& contact : scan.contacts) {
         if (is_wall(contact.partner)) continue;
-        const Vec3 n = direction(now, scan, contact);
+        const Vec3 n = apart(now, scan.position[contact.grain], scan.position[contact.partner]).normalized();
         sum += n * n.transpose();
         ++pairs;
     }
     return pairs > 0 ? Mat3(sum / pairs) : unknown_tensor();
-}
-
-double normal_force(const Box& box, const Scan& scan, const Contact& contact) {
-    return -contact.force.dot(direction(deformed(box, scan.strain), scan, contact));
 }
 
 }  // namespace mcdem::core

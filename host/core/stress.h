@@ -27,8 +27,4 @@ std::array<Vec3, wall_count> face_forces(const Box& now, const Mat3& stress);
 /// trace is one; NaN if there are no contacts.
 Mat3 packing_fabric(const Box& box, const Scan& scan);
 
-/// Component of a contact's force along the line from the grain's centre to that of its partner, or normal to
-/// the wall; positive in compression [N]. The tangential force is the remainder.
-double normal_force(const Box& box, const Scan& scan, const Contact& contact);
-
 }  // namespace mcdem::core

@@ -56,7 +56,7 @@ void File::set_attribute(const std::string& object, const std::string& name, std
     std::string padded(text);
     padded.resize(std::max<std::size_t>(text.size(), 1));
     const Handle type = text_type(text.size());
-    // ParaView 5.11 refuses the types of its files in UTF-8, even if the bytes are the same.
+    // Some readers know only ASCII.
     if (std::ranges::all_of(text, [](unsigned char c) { return c < 128; })) H5Tset_cset(type, H5T_CSET_ASCII);
     write_attribute(object, name, type, scalar(), padded.data());
 }

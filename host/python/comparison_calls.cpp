@@ -1,4 +1,4 @@
-// mcdem.compare, calibrate and export
+// mcdem.compare and calibrate
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -6,7 +6,6 @@
 #include "core/version.h"
 #include "ensemble/calibrate_scene.h"
 #include "ensemble/reference.h"
-#include "io/export_run.h"
 #include "metrics/compare.h"
 #include "python/bindings.h"
 #include "python/watch.h"
@@ -79,12 +78,6 @@ py::object calibrate(const Scene& scene, const py::object& reference, const std:
     });
 }
 
-int export_files(const std::filesystem::path& path, const std::filesystem::path& folder, bool vtk, bool xyz,
-                 std::vector<int> replicas, std::vector<int> scans) {
-    const py::gil_scoped_release others_go_on;
-    return export_run(path, folder, {vtk, xyz}, {std::move(replicas), std::move(scans)});
-}
-
 }  // namespace
 
 void bind_comparison(py::module_& module) {
@@ -104,12 +97,6 @@ void bind_comparison(py::module_& module) {
                py::arg("model") = "mc_dem", py::arg("device") = "", py::arg("progress") = py::none(),
                "The gamma of MC-DEM that gives the reference's top force, or the grains' Young's modulus for "
                "another model,\nas `mcdem calibrate` finds it; keys of the dict as in calibration.json.");
-    module.def("export", &export_files, py::arg("path"), py::arg("folder"), py::kw_only(),
-               py::arg("vtk") = false, py::arg("xyz") = false, py::arg("replicas") = std::vector<int>{},
-               py::arg("scans") = std::vector<int>{},
-               "Writes grains and contacts of a result folder for ParaView (vtk) or OVITO (xyz), as `mcdem "
-               "export` does.\n`replicas`, `scans`: their numbers; all where empty. Returns the number of "
-               "files.");
 }
 
 }  // namespace mcdem::python

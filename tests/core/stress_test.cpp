@@ -56,12 +56,6 @@ TEST(Stress, FabricCountsContactsBetweenGrains) {
     EXPECT_TRUE(std::isnan(packing_fabric(box, alone)(0, 0)));
 }
 
-TEST(Stress, NormalForceIsTheComponentAlongTheCentres) {
-    const Scan scan = pair();
-    EXPECT_DOUBLE_EQ(normal_force(box, scan, scan.contacts[0]), 5);
-    EXPECT_DOUBLE_EQ(normal_force(box, scan, scan.contacts[1]), 3);
-}
-
 // The contact crosses the boundary: the second grain is 0.41 to the right of the first, and 0.09 to the left
 // of its image.
 TEST(Stress, OfAPeriodicContainerUsesNearestImages) {
@@ -73,7 +67,6 @@ TEST(Stress, OfAPeriodicContainerUsesNearestImages) {
     sum(0, 0) = 0.19 * 3;
     EXPECT_TRUE(packing_stress(cell, scan).isApprox(sum / (0.5 * 0.4 * 0.3), 1e-12));
     EXPECT_TRUE(packing_fabric(cell, scan).isApprox(Vec3(1, 0, 0).asDiagonal().toDenseMatrix(), 1e-12));
-    EXPECT_NEAR(normal_force(cell, scan, scan.contacts[0]), 3, 1e-12);
 }
 
 TEST(Stress, OfACylinderUsesItsVolume) {

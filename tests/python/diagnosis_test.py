@@ -1,4 +1,4 @@
-"""mcdem.diagnose gives the same as `mcdem diagnose`, key by key.
+"""mcdem.diagnose gives the same as `mcdem diagnose`, key by key; functions that call the program.
 
 diagnosis_test.py PROGRAM
 """
@@ -23,6 +23,7 @@ class Diagnoses(unittest.TestCase):
         kept = tempfile.TemporaryDirectory(prefix="mcdem-diagnosis-")
         cls.addClassCleanup(kept.cleanup)
         cls.folder = pathlib.Path(kept.name)
+        os.environ["MCDEM_PROGRAM"] = PROGRAM
         cls.scene = mcdem.Scene(SMALL, contact={"model": "elastic_sphere"})
         reality = mcdem.Scene({**SMALL, "protocol": {**SMALL["protocol"], "scan_at_start": True}},
                               contact={"model": "elastic_sphere"}, effects={"adhesion": 0.5})
@@ -59,8 +60,14 @@ class Diagnoses(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "refine: must be between 1 and 64, got 0.5"):
             mcdem.diagnose(stiffer, self.folder / "measured", self.folder / "stiffer", refine=0.5, **FEW)
 
+    def test_exports_a_run(self):
+        view = self.folder / "view"
+        count = mcdem.export(self.folder / "run", view, vtk=True, xyz=True, replicas=[0], scans=[0, 1])
+        self.assertEqual(count, sum(1 for file in view.rglob("*.*") if file.suffix in (".hdf", ".xyz", ".dump")))
+        with self.assertRaisesRegex(ValueError, "vtk, xyz or both"):
+            mcdem.export(self.folder / "run", view)
+
     def test_reports_runs_and_diagnoses(self):
-        os.environ["MCDEM_PROGRAM"] = PROGRAM
         page = mcdem.report(self.folder / "run", self.folder / "page.html", against=[self.folder / "measured"])
         self.assertIn("errf", page.read_text())  # a column of the table of a comparison
         with self.assertRaisesRegex(ValueError, "nowhere"):

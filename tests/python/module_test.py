@@ -332,13 +332,6 @@ class Runs(Folder):
         with self.assertRaisesRegex(ValueError, "rubber"):
             mcdem.calibrate(mcdem.Scene(SMALL), run, setting="elastic_sphere", model="rubber")
 
-    def test_export(self):
-        mcdem.run(mcdem.Scene(SMALL), self.folder / "shown")
-        count = mcdem.export(self.folder / "shown", self.folder / "view", vtk=True, xyz=True)
-        self.assertEqual(count, sum(1 for file in (self.folder / "view").rglob("*.*") if file.suffix in (".hdf", ".xyz", ".dump")))
-        with self.assertRaisesRegex(ValueError, "vtk, xyz or both"):
-            mcdem.export(self.folder / "shown", self.folder / "view")
-
     def test_where_all_replicas_fail_the_run_fails(self):
         # far beyond the range of a half space: the corrections run away
         scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.03}, contact={"model": "mc_dem", "gamma": 1.8})

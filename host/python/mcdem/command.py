@@ -47,3 +47,13 @@ def report(sources, out, *, against=(), setting="", scans=None):
     words += ["--scans", str(scans)] if scans else []
     ask(words)
     return pathlib.Path(out)
+
+
+def export(path, folder, *, vtk=False, xyz=False, replicas=(), scans=()):
+    """Writes grains and contacts of a result folder for ParaView (vtk) or OVITO (xyz), as `mcdem export` does.
+
+    `replicas`, `scans`: their numbers; all where empty. Returns the number of files.
+    """
+    words = ["export", os.fspath(path), "--out", os.fspath(folder)] + ["--vtk"] * bool(vtk) + ["--xyz"] * bool(xyz)
+    words += [f"--replica={number}" for number in replicas] + [f"--scan={number}" for number in scans]
+    return int(ask(words).split()[0])

@@ -1,18 +1,24 @@
-"""Atomic file writes."""
+"""Atomic file writes, and protection of existing files."""
+import contextlib
 import fcntl
 import os
 import pathlib
 import secrets
 
+from .errors import InputError
 
-def write_whole(file, content):
-    """Writes bytes to a temporary file, flushes it to disk and renames it. An OSError names the file."""
+HEAD = 1 << 16  # bytes of a file by which its kind is recognised
+
+
+@contextlib.contextmanager
+def new_file(file):
+    """A temporary file to write bytes to, which is then flushed to disk and renamed. An OSError names the file."""
     file = pathlib.Path(file)
     temporary = file.with_name(f"{file.name}.{secrets.token_hex(8)}.tmp")
     try:
         with open(temporary, "xb") as out:
             fcntl.flock(out, fcntl.LOCK_EX)  # others remove only unlocked files (host/core/atomic_file.cpp)
-            out.write(content)
+            yield out
             out.flush()
             os.fsync(out.fileno())
         os.replace(temporary, file)
@@ -20,3 +26,23 @@ def write_whole(file, content):
         raise OSError(error.errno, error.strerror, str(file)) from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def write_whole(file, content):
+    """Writes bytes by new_file."""
+    with new_file(file) as out:
+        out.write(content)
+
+
+def expect_replaceable(file, what, begins, holds=b""):
+    """Raises InputError unless the path is free, or holds an empty file or `what` mcdem wrote, which has these marks in its head."""
+    problem = None
+    if os.path.isfile(file):
+        with open(file, "rb") as there:
+            head = there.read(HEAD)
+        if head and not (head.startswith(begins) and holds in head):
+            problem = f"is not {what}"
+    elif os.path.lexists(file):
+        problem = "is there, but is no file"
+    if problem:
+        raise InputError(f"{file}: {problem}, and is not replaced: give another place (--out), or remove it first")

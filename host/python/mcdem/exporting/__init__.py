@@ -1,0 +1,21 @@
+"""Exports grains and contacts of a run for ParaView (vtk.py) and OVITO (xyz.py)."""
+from ..files import expect_replaceable, write_whole
+from .run_file import read_replicas
+
+
+def export(files, folder, formats, replicas=(), scans=()):
+    """Exports a run, whose files have been checked, into a folder (pathlib.Path) by modules of this package: vtk, xyz.
+    `replicas`, `scans`: their numbers; all where empty. Returns the number of files."""
+    run = read_replicas(files)
+    keys = sorted(set().union(*(replica.parameters for replica in run)))
+    varying = [key for key in keys if len({replica.parameters.get(key, "") for replica in run}) > 1]
+    chosen = [replica for replica in run if not replicas or replica.number in replicas]
+    listed = "".join(replica.file_name + "".join(f"  {key} = {replica.parameters.get(key, '')}" for key in varying) + "\n"
+                     for replica in chosen)
+    count = 0
+    for form in formats:
+        guide = folder / form.GUIDE_NAME
+        expect_replaceable(guide, "the guide to an export", form.GUIDE[:60].encode())
+        write_whole(guide, (form.GUIDE + listed).encode("utf-8", "surrogateescape"))
+        count += sum(form.export_replica(replica, folder, lambda scan: not scans or scan.frame in scans) for replica in chosen)
+    return count

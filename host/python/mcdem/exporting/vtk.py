@@ -1,0 +1,205 @@
+"""Grains, contacts and walls as VTKHDF files (unstructured grids, version 1.0: ParaView 5.10, VTK 9.1 or later)."""
+import io
+import re
+
+import h5py
+import numpy as np
+
+from ..files import expect_replaceable, write_whole
+from .run_file import PERIODIC, PLATE, Contacts
+
+GUIDE_NAME = "README.txt"
+GUIDE = """Grains and contacts for ParaView
+================================
+
+A folder a replica, called after its number and label; in it, one file a scan:
+
+grains_000000.hdf, ..     grains
+contacts_000000.hdf, ..   contacts, as lines from centre to centre
+forces_000000.hdf, ..     the same contacts as points where they are, with their forces
+walls_000000.hdf, ..      walls as surfaces; edges where a container repeats
+
+1. Start ParaView (5.10 or later), File > Open, choose the group `grains_..hdf` of a replica (ParaView shows the
+   numbered files as one time series), reader `VTKHDF`, Apply.
+2. Grains: Filters > Glyph; Glyph Type `Sphere` with Radius 0.5, Orientation Array `No orientation array`,
+   Scale Array `diameter`, Scale Factor 1, Glyph Mode `All Points`. Colour by `coordination_number`, `pressure`, a
+   component of `stress` or `displacement_since_last_scan`.
+3. Contacts: open `contacts_..hdf`, Filters > Extract Surface, then Filters > Tube; Scalars `force_magnitude`, Vary
+   Radius `By Scalar`. Colour by `force_magnitude`: the force chains.
+4. Arrows: open `forces_..hdf`, Filters > Glyph; Glyph Type `Arrow`, Orientation Array and Scale Array `force`, Glyph
+   Mode `All Points`. The force is that on `grain`; its partner feels the opposite one.
+5. Walls: open `walls_..hdf`, Apply, Opacity 0.2. Colour by `wall`.
+
+Lengths in metres, forces in newtons, stress in pascals, compression positive. `stress` of a grain has nine components:
+xx, xy, xz, yx, .. (row: branch from centre to contact, column: force), over the volume of the undeformed sphere. Each
+file carries frame, time, plate_z and top_force as field data, and the strains of a cell. Walls are partners -1 to -6: x_min, x_max, y_min, y_max,
+floor, plate. The side of a cylinder is partner -1. In a container that is periodic along x and y grains are where they
+have moved to, also out of it; in a cell they are in an upright box of its lengths, and displacements are those beyond
+the cell's own motion. Contacts end at a partner's nearest image. The force of `walls` is that of all grains on the
+wall, the same on each of its surfaces. `rotation` of a grain is since the start of the run, before the packing relaxes, as
+axis times angle in radians. Without output.contacts grains have no coordination_number, force_magnitude, stress and pressure.
+
+The replicas here, with the scene keys that are not the same in all of the run:
+"""
+
+CELL_TYPES = np.array([1, 3, 7], np.uint8)  # of VTK: vertex, line, polygon
+CURVED_WALL, FLOOR = 0, 4  # numbers of walls; PLATE is another
+SIDES = 64  # of the polygon that approximates a circle
+
+
+def export_replica(replica, folder, is_chosen):
+    """Writes four files for each chosen scan with positions into a folder of the replica, and returns their number. Removes
+    numbered files of an earlier export, which ParaView would show in the same time series."""
+    folder = folder / replica.file_name
+    written = set()
+    first = last = None
+    for scan in replica.scans():
+        if scan.position is None:
+            continue
+        first, last = first or scan, last or scan
+        if is_chosen(scan):
+            folder.mkdir(exist_ok=True)
+            contacts = Contacts(scan)
+            grids = {"grains": grains_grid(scan, contacts, first, last), "contacts": contacts_grid(scan, contacts),
+                     "forces": forces_grid(contacts), "walls": walls_grid(scan)}
+            for what, grid in grids.items():
+                file = folder / f"{what}_{scan.frame:06}.hdf"
+                expect_replaceable(file, "an export", b"\x89HDF\r\n", b"VTKHDF")
+                write_whole(file, grid_bytes(scan, *grid))
+                written.add(file)
+        last = scan
+    if written:
+        for file in set(folder.iterdir()) - written:
+            if re.fullmatch(r"(grains|contacts|forces|walls)_\d*\.hdf", file.name):
+                file.unlink()
+    return len(written)
+
+
+def grid_bytes(scan, points, sizes, point_data, cell_data):
+    """A VTKHDF file of cells with `sizes` points each, in sequence: vertices, lines and polygons. The properties of the scan are field data."""
+    fields = {"frame": scan.frame, "time": scan.time, "plate_z": scan.plate_z, "top_force": scan.top_force}
+    if scan.replica.is_cell:
+        fields |= zip(("strain_x", "strain_y", "strain_z", "shear_xy", "shear_xz", "shear_yz"), scan.strain)
+    tables = {"NumberOfPoints": [len(points)], "NumberOfCells": [len(sizes)], "NumberOfConnectivityIds": [len(points)],
+              "Points": points, "Connectivity": np.arange(len(points)), "Offsets": np.cumsum([0, *sizes]),
+              "Types": CELL_TYPES[np.clip(sizes, 1, 3).astype(int) - 1]}
+    image = io.BytesIO()  # written to disk as a whole, because HDF5 does not recover from a full disk
+    with h5py.File(image, "w", libver="v110") as file:
+        grid = file.create_group("VTKHDF")
+        grid.attrs["Version"] = [1, 0]
+        grid.attrs["Type"] = np.bytes_("UnstructuredGrid")
+        groups = {"PointData": point_data, "CellData": cell_data,
+                  "FieldData": {name: [float(value)] for name, value in fields.items()}}
+        for group in groups:
+            grid.create_group(group)
+            tables |= {f"{group}/{name}": values for name, values in groups[group].items()}
+        for name, values in tables.items():
+            values = np.asarray(values)
+            grid.create_dataset(name, data=values, maxshape=(None, *values.shape[1:]), compression="gzip", compression_opts=1,
+                                shuffle=True, fletcher32=True)
+    return image.getbuffer()
+
+
+def displacement(scan, before):
+    """Of each grain [m]; continuous when it crosses the border of a periodic cell. In a `cell`, beyond the cell's own motion."""
+    motion = scan.deformation @ np.linalg.inv(before.deformation)
+    moved = scan.position - before.position @ motion.T
+    return scan.nearest(moved) if scan.replica.is_cell else moved
+
+
+def rotation_since(scan, before):
+    """Rotation of each grain since another scan, axis times angle [rad], from unit quaternions."""
+    def halves(turn):
+        half = np.linalg.norm(turn, axis=1, keepdims=True) / 2
+        return np.cos(half), turn / 2 * np.sinc(half / np.pi)
+
+    (w, v), (w_before, v_before) = halves(scan.rotation), halves(before.rotation)
+    cosine = w * w_before + (v * v_before).sum(axis=1, keepdims=True)
+    vector = w_before * v - w * v_before - np.cross(v, v_before)
+    vector = np.where(cosine < 0, -vector, vector)
+    sine = np.linalg.norm(vector, axis=1, keepdims=True)
+    return vector * np.where(sine > 0, 2 * np.arctan2(sine, abs(cosine)) / np.where(sine > 0, sine, 1), 2)
+
+
+def grains_grid(scan, contacts, first, last):
+    replica = scan.replica
+    count = len(scan.position)
+    data = {"grain": np.arange(count, dtype=np.int32), "diameter": replica.diameter}
+    if replica.species is not None:
+        data["species"] = replica.species
+    if contacts.are_known:
+        stress = contacts.stress()
+        data |= {"coordination_number": contacts.coordination_number(), "force_magnitude": contacts.force_magnitude(),
+                 "stress": stress.reshape(-1, 9), "pressure": np.trace(stress, axis1=1, axis2=2) / 3}
+    data |= {"displacement": displacement(scan, first), "displacement_since_last_scan": displacement(scan, last)}
+    if scan.rotation is not None:
+        data["rotation"] = scan.rotation
+    if scan.rotation is not None and last.rotation is not None:
+        data["rotation_since_last_scan"] = rotation_since(scan, last)
+    return scan.position, [1] * count, data, {}
+
+
+def contact_data(contacts):
+    normal = contacts.normal_force()
+    return {"grain": contacts.grain, "partner": contacts.partner, "force": contacts.force, "force_magnitude": contacts.magnitude,
+            "normal_force": normal, "tangential_force": np.sqrt(np.maximum(0, (contacts.force ** 2).sum(axis=1) - normal ** 2)),
+            "overlap": contacts.overlap}
+
+
+def wall_foot(scan, wall, points):
+    """Feet of the perpendiculars from points on the walls with these numbers; the plate is level."""
+    foot = points.copy()
+    size_x, size_y, _ = scan.replica.edges
+    foot[np.arange(len(wall)), wall // 2] = np.array([0, size_x, 0, size_y, 0, scan.plate_z])[wall]
+    if scan.replica.shape == "cylinder":
+        curved = wall == CURVED_WALL
+        out = points[curved, :2] - scan.replica.edges[:2] / 2
+        away = np.linalg.norm(out, axis=1, keepdims=True)
+        towards = np.where(away > 0, out / np.where(away > 0, away, 1), [1, 0])
+        foot[curved, :2] = points[curved, :2] + (size_x / 2 - away) * towards
+    return foot
+
+
+def contacts_grid(scan, contacts):
+    """Lines from the grain's centre to that of its partner, or to the foot on the wall. Forces are also at the ends, because tubes
+    take their radius from point data."""
+    start = scan.position[contacts.grain]
+    end = start + scan.nearest(contacts.partner_position() - start)
+    at_wall = ~contacts.is_pair
+    end[at_wall] = wall_foot(scan, -1 - contacts.partner[at_wall], start[at_wall])
+    count = len(start)
+    ends = {"force": contacts.force.repeat(2, axis=0), "force_magnitude": contacts.magnitude.repeat(2)}
+    return np.stack([start, end], axis=1).reshape(-1, 3), [2] * count, ends, contact_data(contacts)
+
+
+def forces_grid(contacts):
+    """The same contacts as points at their positions."""
+    count = len(contacts.point)
+    return contacts.point, [1] * count, contact_data(contacts), {}
+
+
+def walls_grid(scan):
+    """Walls with their numbers and the force by the grains; -1: an edge of a periodic container. Side walls extend from the floor to
+    the initial height of the plate; a `cell` is drawn as the upright cell that contains the positions."""
+    shape = scan.replica.shape
+    size_x, size_y, height = np.diag(scan.cell)
+    angle = 2 * np.pi * np.arange(SIDES) / SIDES
+    corners = np.array([[0, 0, 0], [size_x, 0, 0], [size_x, size_y, 0], [0, size_y, 0]])  # counterclockwise from above
+    if shape == "cylinder":
+        corners = size_x / 2 * np.stack([1 + np.cos(angle), 1 + np.sin(angle), 0 * angle], axis=1)
+    after = np.roll(corners, -1, axis=0)
+    if shape != "cell":
+        height = max(height, scan.plate_z)
+    up = np.array([0, 0, height])
+    if PERIODIC[shape]:
+        cells = [(-1, [here, here + up]) for here in corners]
+    else:
+        walls = [CURVED_WALL] * SIDES if shape == "cylinder" else (2, 1, 3, 0)
+        cells = [(wall, [here, there, there + up, here + up]) for wall, here, there in zip(walls, corners, after)]
+    if shape == "cell":
+        cells += [(-1, [here + level, there + level]) for level in (0 * up, up) for here, there in zip(corners, after)]
+    else:
+        cells += [(FLOOR, corners), (PLATE, corners + [0, 0, scan.plate_z])]
+    walls, faces = zip(*cells)
+    data = {"wall": np.array(walls, np.int32), "force": [scan.wall_force[wall] if wall >= 0 else np.zeros(3) for wall in walls]}
+    return np.concatenate(faces), [len(face) for face in faces], {}, data
