@@ -9,7 +9,7 @@ namespace {
 
 constexpr int slots = 16, grains = 64;
 
-/// The layouts of the device, with room for `grains` grains.
+/// The layouts that the device runs.
 std::vector<KernelBuild> ways() { return all_ways(build(Precision::single_precision)); }
 
 // With one work-item per slot. (A work-item of a CPU has already combined all slots.)
