@@ -78,6 +78,15 @@ def defined_names(text):
             yield next(filter(None, found.groups()))
 
 
+def hidden_types(text):
+    """Types and constants that are defined in unnamed namespaces."""
+    for block in re.findall(r"^namespace \{$(.*?)^\}  // namespace$", text, re.MULTILINE | re.DOTALL):
+        for line in block.splitlines():
+            found = re.match(r"(?:struct|class|enum class) (\w+)[^;]*$|const(?:expr)? [^(]*?[ &*>](\w+)(?:\[\w*\])* ?[={]", line)
+            if found:
+                yield found[1] or found[2]
+
+
 def test_names_twice(root):
     """Tests of a floor are compiled together: files must have no names in common in one namespace, not even of overloads."""
     for floor in sorted(FLOORS):
@@ -88,6 +97,31 @@ def test_names_twice(root):
                 if name in seen and seen[name].stem != file.stem:
                     yield f"{file.relative_to(root)}: {name} is also in {seen[name].relative_to(root)}"
                 seen[name] = file
+
+
+def hidden_types_twice(root):
+    """Sources of a floor are compiled together: one name in two unnamed namespaces is an error unless it is a function's."""
+    for floor in FLOORS:
+        seen = {}
+        for file in sorted((root / "host" / floor).rglob("*.cpp")):
+            for name in sorted(set(hidden_types(file.read_text()))):
+                if name in seen:
+                    yield f"{file.relative_to(root)}: {name} is also in {seen[name].relative_to(root)}"
+                seen[name] = file
+
+
+def has_functions(kernel_file):
+    return re.search(r"^\s*(INLINE|kernel|WORK_GROUP)\b", kernel_file.read_text(), re.MULTILINE)
+
+
+def untested_kernels(root):
+    """Functions of kernels/NAME are tested in tests/kernels/NAME_test.cpp; structs and constants in shared_structs_test.cpp."""
+    names = {file.stem for file in (root / "kernels").glob("*.*") if file.suffix in (".h", ".cl") and has_functions(file)}
+    tests = {file.name.removesuffix("_test.cpp") for file in (root / "tests" / "kernels").glob("*_test.cpp")}
+    for name in sorted(names - tests):
+        yield f"kernels/{name}: has functions, but there is no tests/kernels/{name}_test.cpp"
+    for name in sorted(tests - names - {"shared_structs"}):
+        yield f"tests/kernels/{name}_test.cpp: is named after no file of kernels/ with functions"
 
 
 def strange_folders(root):
@@ -150,13 +184,16 @@ def self_test():
     assert list(defined_names("struct A {\n    int b;\nstd::vector<int> f(int a,\nconst int c = 3;\nTEST(A, b) {\n")) == ["A", "f", "c"]
     assert list(argument_counts("kernel void f(int a,\n  global real* b) {\nINLINE lanes3 g(int a) {\n")) == [
         ("kernel", "f", 2), ("device function", "g", 1)]
+    text = "namespace a {\nstruct Open {\n};\nnamespace {\n\nstruct Hidden : Open {\n};\nconstexpr double size = 3;\nvoid f(int a) {\n}\n}  // namespace\n}\n"
+    assert list(hidden_types(text)) == ["Hidden", "size"], list(hidden_types(text))
     assert floor_of("sim/engine.h") == "sim" and floor_of("vector") is None
 
 
 def main():
     self_test()
     root = pathlib.Path(sys.argv[1])
-    rules = (strange_folders, wrong_includes, types_twice, test_names_twice, long_files, long_functions, many_arguments)
+    rules = (strange_folders, wrong_includes, types_twice, test_names_twice, hidden_types_twice, untested_kernels, long_files,
+             long_functions, many_arguments)
     problems = [problem for rule in rules for problem in rule(root)]
     print("\n".join(problems) or f"{sum(1 for _ in sources(root))} files in order")
     return 1 if problems else 0

@@ -1,5 +1,6 @@
 // Whole steps of the engine against the double-precision reference: every contact model and friction law,
-// various numbers of grains, batches, both precisions, 16 and 32 slots, the CPU and the GPU layout.
+// various numbers of grains, batches, both precisions, every allowed number of slots, the CPU and the GPU
+// layout.
 #include "kernels/steps_as_reference.h"
 
 namespace reference {
@@ -77,6 +78,22 @@ TEST(Step, FollowsTheReferenceWith32Slots) {
         expect_steps_as_reference(build(precision, 32), starts, 12);
     }
 }
+
+class Slots : public testing::TestWithParam<int> {};
+
+TEST_P(Slots, FollowTheReference) {
+    for (Precision precision : precisions()) {
+        std::vector<Start> starts;
+        for (ContactModel model : {ContactModel::mc_dem, ContactModel::elastic_sphere})
+            for (int count : {1, 17, 64}) {
+                const Start start = start_of(model, FrictionLaw::mindlin, count, 31);
+                starts.push_back(GetParam() > 16 ? with_many_neighbours(start) : start);
+            }
+        expect_steps_as_reference(build(precision, GetParam()), starts, 17);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(, Slots, testing::Values(16, 32, 48, 64));
 
 void expect_other_way_as_reference(Precision precision) {
     std::vector<Start> starts;

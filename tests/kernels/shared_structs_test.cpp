@@ -1,4 +1,4 @@
-// Structs shared by host and device have the same layout on both.
+// Structs shared by host and device (material.h, replica.h, report.h) have the same layout on both.
 #include <cstddef>
 
 #include "reference/test_scene.h"

@@ -47,4 +47,39 @@ inline std::vector<float> mapped_rows(const std::string& body, const mcdem::f32:
     return found;
 }
 
+/// Applies the OpenCL code `body` as a step does, one work-group per block of grains: it has the `table` and
+/// the `scratch` of its grains and can use `replica`. READ(v, q) is number q of slot v of its grains, `first`
+/// and those after it; WRITE(v, q, value) writes number q of the result. `in` has `read` numbers per slot,
+/// the result `written`, grain after grain.
+inline std::vector<float> mapped_slots(const std::string& body, const mcdem::f32::Replica& replica,
+                                       const std::vector<float>& in, int read, int written,
+                                       const KernelBuild& kernels) {
+    const std::string text = fmt::format(
+        "#define ROW(v) (((first + LANE_NUMBERS) * SLOTS + SLOT(v)))\n"
+        "#define READ(v, q) gather(in, ROW(v) * {} + (q))\n"
+        "#define WRITE(v, q, value) do {{ const lanes all = value; for (int lane = 0; lane < LANES; ++lane) "
+        "out[((first + lane) * SLOTS + SLOT(v)) * {} + (q)] = LANE(real, all, lane); }} while (false)\n"
+        "WORK_GROUP(STEP_ITEMS) kernel void map_slots(global const Replica* replica, global const real* in, "
+        "global real* out) {{\n"
+        "MEMORY_OF_WORK_ITEM\n(void)table, (void)scratch;\n"
+        "const Block block = {{0, (int)get_group_id(0) * BLOCK}};\n"
+        "const int first = FIRST_GRAIN(block);\n{}\n}}",
+        read, written, body);
+    struct Replicas;
+    struct In;
+    struct Out;
+    const std::size_t slots = in.size() / static_cast<std::size_t>(read);
+    mcdem::Field<Replicas> of(device(), 1, sizeof replica);
+    mcdem::Field<In> from(device(), in.size(), sizeof(float));
+    mcdem::Field<Out> to(device(), slots * static_cast<std::size_t>(written), sizeof(float));
+    of.write(&replica);
+    from.write(in.data());
+    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<In>, mcdem::Field<Out>>(
+        device(), with_kernel(text, kernels), "map_slots", kernels.work_items())(
+        slots / static_cast<std::size_t>(kernels.slots * kernels.block()), of, from, to);
+    std::vector<float> found(slots * static_cast<std::size_t>(written));
+    to.read(found.data());
+    return found;
+}
+
 }  // namespace reference

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int not_started = 126, not_found = 127;    ///< exit codes of env
-constexpr auto look = std::chrono::milliseconds(5);  ///< interval between checks whether it has ended
+constexpr int not_started = 126, not_found = 127;              ///< exit codes of env
+constexpr auto check_interval = std::chrono::milliseconds(5);  ///< of whether it has ended
 
 std::string variable(const char* name) {
     const char* value = std::getenv(name);
@@ -60,7 +60,7 @@ ProgramEnd end_of(Subprocess python) {
             python.send(SIGINT);
             told = true;
         }
-        std::this_thread::sleep_for(look);
+        std::this_thread::sleep_for(check_interval);
     }
 }
 

@@ -1,9 +1,9 @@
 // Kernel arguments have quantity types: calls with swapped or missing fields do not compile.
+#include "sim/fields.h"
+
 #include <gtest/gtest.h>
 
 #include <type_traits>
-
-#include "sim/fields.h"
 
 namespace mcdem {
 namespace {
