@@ -59,11 +59,11 @@ std::string observables_digest() {
 
 }  // namespace
 
-std::map<std::string, std::string> library_origin(const Question& question, const Model& model,
+std::map<std::string, std::string> library_origin(const TrialSettings& common, const Model& model,
                                                   std::size_t grains) {
     std::map<std::string, std::string> origin;
     Settings settings;
-    settings.run = question.scene;
+    settings.run = common.scene;
     settings.replica = model.replica;
     for (const Key& key : keys())
         if ((key.scope == Scope::replica && !key.name.starts_with("packing.")) ||
@@ -79,8 +79,8 @@ std::map<std::string, std::string> library_origin(const Question& question, cons
     origin["grains"] = fmt::format("{}", grains);
     origin["kernels"] = Sha256().add(program_text()).hex();
     origin["observables"] = observables_digest();
-    origin["program"] = question.program.substr(
-        0, question.program.find(' '));  // only the version; a commit need not change results
+    origin["program"] = common.program.substr(
+        0, common.program.find(' '));  // only the version; a commit need not change results
     return origin;
 }
 

@@ -94,7 +94,7 @@ class Errors(ImportCase):
         tables = self.guess(files)
         contacts = mapping_of(tables)[2]
         for key in ("id_offset", "force_on", "length_unit", "force_unit"):
-            self.assertEqual(contacts[key].sure, "unclear", key)
+            self.assertEqual(contacts[key].certainty, "unclear", key)
         self.expect_among(wrong_rows(tables), 'must be a finite number, got "NaN"')
 
     def test_what_is_missing_is_told(self):

@@ -40,14 +40,14 @@ class Frames(ImportCase):
                           "ITEM: ATOMS id x y z radius\n")
         tables = self.guess([self.plate("frame [s]"), dump])
         frames = self.of(tables, "grains")["frames_by"]
-        self.assertEqual(frames.sure, "unclear")
+        self.assertEqual(frames.certainty, "unclear")
         self.assertIn("there are 0 frames here", frames.why)
         self.expect_among(self.problems_of(lambda: self.imported(tables)), "grains.dump: must have rows")
 
     def test_numbers_in_file_names_are_those_of_the_plate(self):
         files = [self.plate("frame")] + self.grain_files([(2, "grains_002.txt"), (3, "grains_003.txt"), (5, "grains_005.txt")])
         tables = self.guess(files)
-        self.assertEqual(self.of(tables, "grains")["frames_by"].sure, "likely")
+        self.assertEqual(self.of(tables, "grains")["frames_by"].certainty, "likely")
         self.assertEqual(self.unclear(tables), [])
         imported = self.imported(tables)
         self.assertEqual(len(imported.plate), 5, "two rows before the first grains are left out")
@@ -78,7 +78,7 @@ class Frames(ImportCase):
             plate = self.plate(frame, 0, 0.7, [Row(*row) for row in zip(heights, forces)])
             tables = self.guess([plate] + files)
             self.assertEqual(self.of(tables, "grains").word("frames_by"), "rows" if frame else "plate")
-            self.assertEqual(self.of(tables, "grains")["frames_by"].sure, "likely")
+            self.assertEqual(self.of(tables, "grains")["frames_by"].certainty, "likely")
             self.assertEqual(self.unclear(tables), [])
             imported = self.imported(tables)
             self.assertEqual([*imported.grains.frame.unique()], [0, 12, 24])

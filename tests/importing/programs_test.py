@@ -214,7 +214,7 @@ class Images(ImportCase):
         contacts = self.write("contacts.csv", Style(",", ".").table(["label1", "label2", "orientZ", "orientY", "orientX", "voxels"], pairs))
         tables = self.guess(self.spam_labels() + [contacts])
         unused = next(table.map for table in tables if table.map.files == [contacts])
-        self.assertEqual((unused.role, unused.role_sure), ("unused", "likely"))
+        self.assertEqual((unused.role, unused.role_certainty), ("unused", "likely"))
         self.assertIn("without forces", unused.role_why)
         self.assertEqual(self.unclear(tables), [])
         self.expect_truth(tables)
