@@ -57,7 +57,7 @@ const Ablation ablation_table[] = {
     {"without confirming runs", "signatures alone", as_it_is},
     {"without conditional observables", "nothing that needs positions", without_conditional_observables},
     {"without pairing", "the mean over other packings for runs of the experiment's own", without_pairing},
-    {"without nuisances", "modulus and strain zero taken for exact", without_nuisances},
+    {"without nuisances", "modulus and strain zero treated as exact", without_nuisances},
     {"top force alone", "one curve", top_force_alone},
 };
 // clang-format on

@@ -87,7 +87,8 @@ void check_jumps(const Recording& recording, Findings& findings) {
         before = &scan;
     }
     findings.odd(grains_file,
-                 "grains jump by most of a diameter from frame to frame, are they numbered alike? ", tally);
+                 "grains jump by most of a diameter from frame to frame, are they numbered consistently? ",
+                 tally);
 }
 
 }  // namespace

@@ -272,7 +272,7 @@ void Simulation::restore(const std::map<std::string, std::vector<std::byte>>& sa
         for (std::size_t r = 0; r < parts.size(); ++r) {
             std::memcpy(&state, found->second.data() + r * sizeof state, sizeof state);
             if (!parts[r].is_possible(state))
-                refuse_checkpoint("it holds a state of the plate's program that there is not");
+                refuse_checkpoint("it holds an invalid state of the plate's programme");
             parts[r].set_state(state);
         }
     };

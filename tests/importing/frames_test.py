@@ -35,7 +35,7 @@ class Frames(ImportCase):
         grains = imported.grains
         return grains[grains.frame == frame][["x_m", "y_m", "z_m"]].values
 
-    def test_a_table_without_rows_has_no_frames_that_could_be_ones_of_the_plate(self):
+    def test_frames_of_a_table_without_rows_are_unclear(self):
         dump = self.write("grains.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n0\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
                           "ITEM: ATOMS id x y z radius\n")
         tables = self.guess([self.plate("frame [s]"), dump])
@@ -112,7 +112,7 @@ class Frames(ImportCase):
         self.assertEqual(self.unclear(tables), [])
         np.testing.assert_allclose(self.position(self.imported(tables), 3), self.truth.scans[3].position, atol=1e-9)
 
-    def test_numbers_beside_a_plate_without_any_count_from_nought_or_must_be_confirmed(self):
+    def test_frame_numbers_start_at_0_or_must_be_confirmed_if_the_plate_has_none(self):
         files = [self.plate(""), self.grains("frame", 1, (0, 2, 3))]
         self.assertEqual(self.unclear(self.guess(files)), [])
         self.grains("frame", 1, (1, 2, 3))

@@ -175,7 +175,7 @@ void write_files(const FromRunCommand& command, const Experiment& experiment) {
             if ((name == experiment_toml) == last && !fs::exists(out / name)) replace_file(out / name, bytes);
     for (const auto& [name, bytes] : files)
         if (read_file(out / name) != bytes)
-            throw RunError((out / name).string() + ": what was written is not what is read back");
+            throw RunError((out / name).string() + ": the file read back differs from the data written");
 }
 
 void make_experiment(const FromRunCommand& command) {
@@ -276,7 +276,7 @@ void add_experiment_from_run(CLI::App& experiment) {
         "written to experiment.toml, so that a diagnosis has to find them.\n"
         "Examples:\n"
         "  mcdem run scenes/small.toml --out out/begun --set protocol.scan_at_start=true\n"
-        "  mcdem experiment from-run out/begun --replica mc_dem --out out/reality");
+        "  mcdem experiment from-run out/begun --replica mc_dem --out out/measured");
     sub->callback([command] { make_experiment(*command); });
 }
 

@@ -28,7 +28,7 @@ constexpr Observable all_observables[] = {
     {"strongest_forces", Needs::contacts, 0.01, "", "strong", "95 % quantile of contact forces over their mean"},
 
     {"section_load", Needs::positions, 0.002, "", "", "vertical force through horizontal sections, what the side walls carry above them added, over the plate's reading"},
-    {"force_anisotropy", Needs::positions, 0.001, "", "", "vertical share of normal forces, less a third"},
+    {"force_anisotropy", Needs::positions, 0.001, "", "", "vertical share of normal forces, minus one third"},
     {"vertical_gradient", Needs::positions, 0.01, "", "", "change of the mean contact force with depth, over the height"},
     {"non_affine", Needs::positions, 0.001, "", "", "non-affine displacement since the first scan, over the mean diameter"},
     {"attraction", Needs::positions, 0.001, "", "weak", "fraction of the contacts that pull"},
