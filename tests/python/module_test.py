@@ -344,7 +344,7 @@ class Runs(Folder):
         scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.03}, contact={"model": "mc_dem", "gamma": 1.8})
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            with self.assertRaisesRegex(RuntimeError, "no replica came to its end"):
+            with self.assertRaisesRegex(RuntimeError, "all replicas stopped early"):
                 mcdem.simulate(scene)
         self.assertTrue(any("stopped at step" in str(one.message) for one in said))
 
