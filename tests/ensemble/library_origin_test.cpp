@@ -18,9 +18,10 @@ class LibraryOrigin : public ::testing::Test {
 protected:
     std::map<std::string, std::string> origin() const { return library_origin(common, model, grains); }
     void expect_refused(const std::string& problem) const {
-        EXPECT_THAT([&] { expect_origin(library, origin(), "file.json"); },
-                    ThrowsMessage<InputError>(testing::AllOf(HasSubstr("file.json: was made with " + problem),
-                                                             HasSubstr("give another file for --library"))));
+        EXPECT_THAT(
+            [&] { expect_origin(library, origin(), "file.json"); },
+            ThrowsMessage<InputError>(testing::AllOf(HasSubstr("file.json: was made with " + problem),
+                                                     HasSubstr("give another file name for --library"))));
     }
     void expect_taken() const { EXPECT_NO_THROW(expect_origin(library, origin(), "file.json")); }
 
