@@ -25,7 +25,7 @@ void check(double target, const Bracket& bracket, const CalibrationOptions& opti
     demand(std::isfinite(bracket.high) && bracket.high > bracket.low,
            "high end of the bracket must be above its low end", bracket.high);
     demand(options.tolerance > 0, "tolerance must be > 0", options.tolerance);
-    demand(options.batch >= 3, "batch must be at least 3 gammas a round", options.batch);
+    demand(options.batch >= 3, "batch must be at least 3 values per round", options.batch);
     demand(options.rounds >= 1, "rounds must be at least 1", options.rounds);
     if (!problems.empty()) throw InputError(problems);
 }

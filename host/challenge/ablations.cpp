@@ -57,19 +57,19 @@ const Ablation ablation_table[] = {
     {"without confirming runs", "signatures alone", as_it_is},
     {"without conditional observables", "nothing that needs positions", without_conditional_observables},
     {"without pairing", "the mean over other packings for runs of the experiment's own", without_pairing},
-    {"without nuisances", "modulus and strain zero taken for exact", without_nuisances},
+    {"without nuisances", "modulus and strain zero treated as exact", without_nuisances},
     {"top force alone", "one curve", top_force_alone},
 };
 // clang-format on
 
 /// The effect with the largest gain in `space`, with its share of `exp(gain)`.
-struct Winner {
+struct BestEffect {
     std::string name;
     double gain = 0, confidence = 0;
 };
 
-Winner winner(const GapSpace& space, const GapData& data) {
-    Winner best;
+BestEffect best_effect(const GapSpace& space, const GapData& data) {
+    BestEffect best;
     std::vector<double> gains;
     for (int c = 0; c < data.effects; ++c) {
         const Candidate& candidate = data.candidates[c];
@@ -94,14 +94,14 @@ Answer smallest_residual(const Evidence& evidence) {
                                std::sqrt(static_cast<double>(data.noise.rows())) *
                                std::sqrt(static_cast<double>(count));
     }
-    return {Verdict::effect, {winner(GapSpace(independent, 0, data.cells, {}), data).name}, 1};
+    return {Verdict::effect, {best_effect(GapSpace(independent, 0, data.cells, {}), data).name}, 1};
 }
 
 /// Schwarz 1978: an effect is accepted if it justifies its parameter; the method cannot abstain.
 Answer bayesian_information(const Evidence& evidence) {
     const GapData data = gap_data(evidence);
     const GapSpace space(data.noise, static_cast<int>(evidence.baseline.rows()), data.cells, data.free);
-    const Winner best = winner(space, data);
+    const BestEffect best = best_effect(space, data);
     if (2 * best.gain <= std::log(static_cast<double>(data.cells.size()))) return {};
     return {Verdict::effect, {best.name}, best.confidence};
 }

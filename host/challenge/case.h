@@ -1,4 +1,4 @@
-// One reality of the blind challenge: its differences from the scene.
+// One simulated experiment of the blind challenge: its differences from the scene.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 namespace mcdem::inline challenge {
 
 enum class CaseKind {
-    none,           ///< only what every reality has: hidden nuisances, other numerics, noise
+    none,           ///< only what every case has: hidden nuisances, other numerics, noise
     effect,         ///< one effect of the library
     pair,           ///< two of them
     unknown,        ///< an effect that the library of its diagnosis does not have

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <random>
 
+#include "challenge/case_simulator.h"
 #include "challenge/files.h"
-#include "challenge/realities.h"
 #include "challenge/truth.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double weaker = 0.8;  ///< factor of the amplitudes of a reality that ran away, for the next try
+constexpr double weaker = 0.8;  ///< factor of the amplitudes of a case that diverged, for the next try
 constexpr int max_tries = 10;
 constexpr double part_of_tries = 0.3;  ///< of the progress: only the loading, and not all cases
 
@@ -55,12 +55,12 @@ bool is_complete(const fs::path& folder) { return fs::exists(folder / "experimen
 class Making {
 public:
     Making(Device& device, const Scene& scene, const ChallengeOptions& options)
-        : options_(options), realities_(device, scene, options.measurement) {
+        : options_(options), simulator_(device, scene, options.measurement) {
         std::optional<Challenge> sealed;
         if (fs::exists(options.truth)) sealed = parse_truth(read_file(options.truth), options.truth.string());
         challenge_ =
-            draw_challenge(options.size, effects_to_try(options, realities_.stated()), realities_.stated(),
-                           realities_.nuisances(), seal_of(scene.text), seed_of(sealed));
+            draw_challenge(options.size, effects_to_try(options, simulator_.stated()), simulator_.stated(),
+                           simulator_.nuisances(), seal_of(scene.text), seed_of(sealed));
         is_sealed_ = sealed.has_value();
         if (sealed && !alike(*sealed, challenge_)) throw of_another_challenge(options.truth);
         if (sealed) challenge_ = *sealed;
@@ -70,17 +70,18 @@ public:
         Cases missing;
         for (const ChallengeCase& c : challenge_.cases)
             if (!is_sealed_ || !is_complete(options_.folder / c.folder)) missing.push_back(&c);
-        if (!missing.empty()) realities_.make_packings(challenge_.packing_seeds, options_.stop_wanted);
+        if (!missing.empty()) simulator_.make_packings(challenge_.packing_seeds, options_.stop_wanted);
         if (!is_sealed_) weaken_what_runs_away();
         const std::string seal = seal_all();
         const std::size_t before = challenge_.cases.size() - missing.size();
         in_batches(missing, [&](const Cases& batch, std::size_t first) {
-            const auto recordings = realities_.simulate(batch, Realities::Part::all, [&](double fraction) {
-                const double done =
-                    static_cast<double>(before + first) + fraction * static_cast<double>(batch.size());
-                show(part_of_tries +
-                     (1 - part_of_tries) * done / static_cast<double>(challenge_.cases.size()));
-            });
+            const auto recordings =
+                simulator_.simulate(batch, CaseSimulator::Part::all, [&](double fraction) {
+                    const double done =
+                        static_cast<double>(before + first) + fraction * static_cast<double>(batch.size());
+                    show(part_of_tries +
+                         (1 - part_of_tries) * done / static_cast<double>(challenge_.cases.size()));
+                });
             for (std::size_t k = 0; k < batch.size(); ++k) write(*batch[k], recordings[k]);
         });
         return seal;
@@ -102,7 +103,7 @@ private:
     template <class Work>
     void in_batches(const Cases& cases, Work work) const {
         for (std::size_t first = 0; first < cases.size();) {
-            const std::size_t last = std::min(cases.size(), first + realities_.at_once());
+            const std::size_t last = std::min(cases.size(), first + simulator_.at_once());
             work(Cases(cases.begin() + static_cast<std::ptrdiff_t>(first),
                        cases.begin() + static_cast<std::ptrdiff_t>(last)),
                  first);
@@ -110,7 +111,7 @@ private:
         }
     }
 
-    /// Dense packings with interacting contacts have no static solution above some amplitude. Such realities
+    /// Dense packings with interacting contacts have no static solution above some amplitude. Such cases
     /// are loaded again with weaker effects before the truth is sealed.
     void weaken_what_runs_away() {
         Cases tried;
@@ -121,7 +122,7 @@ private:
             Cases failed;
             in_batches(tried, [&](const Cases& batch, std::size_t first) {
                 const auto recordings =
-                    realities_.simulate(batch, Realities::Part::loading, [&](double fraction) {
+                    simulator_.simulate(batch, CaseSimulator::Part::loading, [&](double fraction) {
                         const double part =
                             (static_cast<double>(first) + fraction * static_cast<double>(batch.size())) / all;
                         show(part_of_tries * (tries == 0 ? part : 1));
@@ -131,7 +132,7 @@ private:
             });
             if (!failed.empty() && tries == max_tries)
                 throw RunError(fmt::format(
-                    "{} realities cannot be simulated even with weak effects; compress less", failed.size()));
+                    "{} simulated experiments diverge even with weak effects; compress less", failed.size()));
             for (const ChallengeCase* c : failed)
                 for (Hidden& effect : challenge_.cases[c - challenge_.cases.data()].effects)
                     effect.amplitude *= weaker;
@@ -181,11 +182,11 @@ private:
             throw RunError(
                 fmt::format("{}: its simulation failed at {}", c.folder, recording.failure->text()));
         remove_temporaries(options_.folder / c.folder);
-        write_experiment(options_.folder / c.folder, realities_.experiment(c, recording), Packed::gzip);
+        write_experiment(options_.folder / c.folder, simulator_.experiment(c, recording), Packed::gzip);
     }
 
     const ChallengeOptions& options_;
-    Realities realities_;
+    CaseSimulator simulator_;
     Challenge challenge_;
     bool is_sealed_ = false;
 };

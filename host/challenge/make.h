@@ -1,4 +1,4 @@
-// Generates a blind challenge: realities with hidden effects are simulated, measured, and written as
+// Generates a blind challenge: experiments with hidden effects are simulated, measured, and written as
 // experiments that do not reveal them.
 #pragma once
 #include <filesystem>
@@ -23,7 +23,7 @@ struct ChallengeOptions {
     StopWanted stop_wanted = never_stop;
 };
 
-/// Tests whether all realities can be simulated, and reduces the amplitudes of those that run away. Then
+/// Tests whether all cases can be simulated, and reduces the amplitudes of those that diverge. Then
 /// writes the truth, challenge.json, and missing folders, in this order. Returns the seal, the SHA-256 of the
 /// truth. Throws InputError if the scene is unsuitable or the folder contains another challenge, RunError if
 /// a simulation fails, Interrupted if stop_wanted returns true.

@@ -1,4 +1,5 @@
-// Effects of realities that are in no library: a diagnosis should not name a library effect for them.
+// Effects of simulated experiments that are in no library: a diagnosis should not name a library effect for
+// them.
 #pragma once
 #include <span>
 #include <string_view>

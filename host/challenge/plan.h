@@ -1,4 +1,4 @@
-// Draws the realities of a challenge from one seed.
+// Draws the cases of a challenge from one seed.
 #pragma once
 #include <span>
 

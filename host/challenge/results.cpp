@@ -78,10 +78,10 @@ Evidence evidence_of(const json& j, const Library& library) {
 
 Findings findings_of(const json& j) {
     const Findings findings = j;
-    expect_json(findings.names.size() == findings.gain.size(), "it has not one gain a candidate", j);
+    expect_json(findings.names.size() == findings.gain.size(), "one gain per candidate is required", j);
     for (const Proposal& proposal : findings.proposals)
         for (const std::size_t candidate : proposal.candidates)
-            expect_json(candidate < findings.names.size(), "it proposes a candidate that there is not",
+            expect_json(candidate < findings.names.size(), "it proposes a candidate that does not exist",
                         proposal);
     return findings;
 }

@@ -73,7 +73,7 @@ public:
             const auto kept = read_manifest(device_file(options_.out));
             for (std::size_t k = 0; k < library_parts().size(); ++k)
                 if (!kept ||
-                    !are_observed(kept->at(device_description), question(), library_parts()[k], store()))
+                    !are_observed(kept->at(device_description), common(), library_parts()[k], store()))
                     parts.push_back(challenge_.cases.size() + k);
         }
         return parts.empty() ? missing_cases() : parts;
@@ -93,7 +93,7 @@ public:
             throw InputError(
                 fmt::format("--part: must be below {}, the number of cases and of parts of the library",
                             challenge_.cases.size() + library_parts().size()));
-        observe_trials(device, question(), library_parts()[part], store(), trial_options());
+        observe_trials(device, common(), library_parts()[part], store(), trial_options());
     }
 
     bool merge() override { return missing_cases().empty(); }
@@ -192,9 +192,9 @@ private:
         return *first_;
     }
 
-    Question question() { return question_of(first_experiment()); }
+    TrialSettings common() { return trial_settings_of(first_experiment()); }
 
-    Question question_of(const Experiment& experiment) const {
+    TrialSettings trial_settings_of(const Experiment& experiment) const {
         const Model model = model_of(scene_, experiment);
         return {scene_, grid_of_scene(experiment), reference_material(model), model.replica.protocol.discard,
                 options_.program};
@@ -212,7 +212,7 @@ private:
         const Model model = library_model();
         LibraryPlan plan;
         for (Packing& packing : other_packings(model.replica))
-            plan.specimens.push_back({model, std::move(packing)});
+            plan.packings.push_back({model, std::move(packing)});
         plan.replicates = options_.library.replicates;
         plan.pairs = options_.library.pairs;
         plan.jitter = experiment.measurement.position_error;
@@ -224,7 +224,7 @@ private:
     }
 
     const std::vector<std::vector<Trial>>& library_parts() {
-        if (!library_parts_) library_parts_ = parts_of_trials(question(), library_trials(library_plan()));
+        if (!library_parts_) library_parts_ = parts_of_trials(common(), library_trials(library_plan()));
         return *library_parts_;
     }
 
@@ -239,11 +239,11 @@ private:
         const fs::path& file = options_.library.file;
         const Experiment& experiment = first_experiment();
         if (!fs::exists(file))  // another process may have written the same library in the meantime
-            create_file(file, library_text(build_library(device, question(), library_plan(), store(),
-                                                         trial_options())));
+            create_file(file, library_text(
+                                  build_library(device, common(), library_plan(), store(), trial_options())));
         Library library = read_library(file);
-        expect_origin(library,
-                      library_origin(question(), model_of(scene_, experiment), grains_of(experiment)), file);
+        expect_origin(library, library_origin(common(), model_of(scene_, experiment), grains_of(experiment)),
+                      file);
         const std::string text = library_text(library);
         if (!create_file(library_file(), text) && read_file(library_file()) != text)
             throw InputError(fmt::format(

@@ -35,7 +35,7 @@ void expect_regular(const std::filesystem::path& file, int descriptor) {
 
 void fail_reading(const std::string& what, int error) {
     throw RunError(what + ": " + std::generic_category().message(error) +
-                   "; this says nothing of what is in the file: try again when the cause is gone");
+                   "; the file may be intact: remove the cause and try again");
 }
 
 int open_input(const std::filesystem::path& file) {

@@ -20,9 +20,9 @@ struct Probe {
     void (*apply)(Model&, double);
 };
 
-/// Amplitudes use the scale of the first specimen.
+/// Amplitudes use the scale of the first packing.
 std::vector<Probe> probes_of(const LibraryPlan& plan) {
-    const Model& model = plan.specimens.front().model;
+    const Model& model = plan.packings.front().model;
     std::vector<Probe> probes;
     for (const std::string& name : plan.candidates) {
         const Effect& effect = *find_effect(name);
@@ -40,16 +40,16 @@ std::vector<Probe> probes_of(const LibraryPlan& plan) {
 
 std::vector<Trial> baseline_trials(const LibraryPlan& plan) {
     std::vector<Trial> trials;
-    for (std::size_t p = 0; p < plan.specimens.size(); ++p)
+    for (std::size_t p = 0; p < plan.packings.size(); ++p)
         for (int r = 0; r < plan.replicates; ++r)
-            trials.push_back({plan.specimens[p].model, plan.specimens[p].packing, plan.jitter,
+            trials.push_back({plan.packings[p].model, plan.packings[p].packing, plan.jitter,
                               plan.diameter_jitter, plan.seed + 1000 * p + static_cast<std::uint64_t>(r)});
     return trials;
 }
 
 std::vector<Trial> finer_baseline_trials(LibraryPlan plan) {
     plan.jitter /= 2;
-    for (Specimen& specimen : plan.specimens) specimen.model.instrument.stated.position_error /= 2;
+    for (LibraryPacking& packing : plan.packings) packing.model.instrument.stated.position_error /= 2;
     return baseline_trials(plan);
 }
 
@@ -58,7 +58,7 @@ namespace {
 /// Baseline trials that are repeated with every probe.
 std::vector<std::size_t> paired_trials(const LibraryPlan& plan) {
     std::vector<std::size_t> paired;
-    for (std::size_t t = 0; t < plan.specimens.size() * static_cast<std::size_t>(plan.replicates); ++t)
+    for (std::size_t t = 0; t < plan.packings.size() * static_cast<std::size_t>(plan.replicates); ++t)
         if (static_cast<int>(t) % plan.replicates < plan.pairs) paired.push_back(t);
     return paired;
 }
@@ -78,19 +78,19 @@ std::vector<Trial> library_trials(const LibraryPlan& plan) {
 }
 
 std::string probe_of_trial(const LibraryPlan& plan, std::size_t trial) {
-    const std::size_t baseline = plan.specimens.size() * static_cast<std::size_t>(plan.replicates);
+    const std::size_t baseline = plan.packings.size() * static_cast<std::size_t>(plan.replicates);
     if (trial < baseline) return {};
     return probes_of(plan).at((trial - baseline) / (2 * paired_trials(plan).size())).name;
 }
 
-Library build_library(Device& device, const Question& question, const LibraryPlan& plan,
+Library build_library(Device& device, const TrialSettings& common, const LibraryPlan& plan,
                       const ObservationStore& store, const TrialOptions& options) {
     Library library;
-    library.grid = question.grid;
-    const std::size_t baseline_count = plan.specimens.size() * static_cast<std::size_t>(plan.replicates);
+    library.grid = common.grid;
+    const std::size_t baseline_count = plan.packings.size() * static_cast<std::size_t>(plan.replicates);
     for (std::size_t t = 0; t < baseline_count; ++t)
         library.packing.push_back(static_cast<int>(t) / plan.replicates);
-    const Eigen::MatrixXd observed = observe_trials(device, question, library_trials(plan), store, options);
+    const Eigen::MatrixXd observed = observe_trials(device, common, library_trials(plan), store, options);
     library.baseline = observed.topRows(static_cast<Eigen::Index>(baseline_count));
     const Eigen::MatrixXd before = library.baseline(paired_trials(plan), Eigen::all);
     auto next = static_cast<Eigen::Index>(baseline_count);
@@ -106,9 +106,9 @@ Library build_library(Device& device, const Question& question, const LibraryPla
         list.push_back(learn_signature(probe.name, probe.amplitudes[0], probe.amplitudes[1], differences[0],
                                        differences[1]));
     }
-    const Specimen& first = plan.specimens.front();
-    library.origin = library_origin(question, first.model, first.packing.size());
-    library.provenance = {{"program", question.program}, {"device", device.description()}};
+    const LibraryPacking& first = plan.packings.front();
+    library.origin = library_origin(common, first.model, first.packing.size());
+    library.provenance = {{"program", common.program}, {"device", device.description()}};
     return library;
 }
 

@@ -7,23 +7,23 @@
 namespace mcdem::inline ensemble {
 
 /// A packing and its model.
-struct Specimen {
+struct LibraryPacking {
     Model model;
     Packing packing;
 };
 
 struct LibraryPlan {
-    std::vector<Specimen> specimens;  ///< one or several
-    int replicates = 32;              ///< baseline runs of each specimen, jittered
-    int pairs = 8;                    ///< number of them that are repeated with every effect
-    double jitter = 0;                ///< standard deviation of the noise on every initial coordinate [m]
-    double diameter_jitter = 0;       ///< standard deviation of the noise on every diameter [m]
+    std::vector<LibraryPacking> packings;  ///< one or several
+    int replicates = 32;                   ///< baseline runs of each packing, jittered
+    int pairs = 8;                         ///< number of them that are repeated with every effect
+    double jitter = 0;           ///< standard deviation of the noise on every initial coordinate [m]
+    double diameter_jitter = 0;  ///< standard deviation of the noise on every diameter [m]
     std::uint64_t seed = 1;
     std::vector<std::string> candidates;  ///< effects
     std::vector<Nuisance> nuisances;
 };
 
-/// The trials of a baseline, one specimen after the other. Replicate r of specimen p has the same seed in
+/// The trials of a baseline, one packing after the other. Replicate r of packing p has the same seed in
 /// every library and diagnosis.
 std::vector<Trial> baseline_trials(const LibraryPlan& plan);
 
@@ -36,7 +36,7 @@ std::vector<Trial> library_trials(const LibraryPlan& plan);
 /// Name of the effect or nuisance of a trial of the library; empty for the baseline.
 std::string probe_of_trial(const LibraryPlan& plan, std::size_t trial);
 
-Library build_library(Device& device, const Question& question, const LibraryPlan& plan,
+Library build_library(Device& device, const TrialSettings& common, const LibraryPlan& plan,
                       const ObservationStore& store, const TrialOptions& options);
 
 /// Candidates in `wanted` (empty: all) that this model can have; the others with reasons.

@@ -147,9 +147,9 @@ private:
         const Replica& replica = scene_.replicas.front();
         Trial trial = trial_of(replica, 0, 0);
         trial.keep_recording = true;
-        const Question question = question_of(scene_, trial.model);
-        observe_trials(device_, question, {trial}, store_, trial_options("the programme's displacements"));
-        const Recording recording = kept_recordings(device_, question, {trial}, store_).front();
+        const TrialSettings common = trial_settings_of(scene_, trial.model);
+        observe_trials(device_, common, {trial}, store_, trial_options("the programme's displacements"));
+        const Recording recording = kept_recordings(device_, common, {trial}, store_).front();
         if (recording.failure || recording.scans.empty())
             throw InputError(fmt::format(
                 "{}: the first replica does not come to the end of the programme: `mcdem run` with the same "
@@ -164,7 +164,7 @@ private:
         return {model, packings_[copy], jitter, 0, options_.seed + static_cast<std::uint64_t>(copy)};
     }
 
-    Question question_of(const Scene& scene, const Model& model) const {
+    TrialSettings trial_settings_of(const Scene& scene, const Model& model) const {
         return {scene, grid_, reference_material(model), model.replica.protocol.discard, options_.program};
     }
 
@@ -177,7 +177,7 @@ private:
         const double jitter = options_.jitter > 0 ? options_.jitter : jitter_of_diameter * mean_diameter_;
         std::vector<Trial> trials;
         for (int r = 0; r < options_.replicas; ++r) trials.push_back(trial_of(replica, r, jitter));
-        return observe_trials(device_, question_of(scene, trials.front().model), trials, store_,
+        return observe_trials(device_, trial_settings_of(scene, trials.front().model), trials, store_,
                               trial_options(cause));
     }
 

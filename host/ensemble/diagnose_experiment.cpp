@@ -50,7 +50,7 @@ public:
           options_(options),
           store_(options.folder / "simulations"),
           choice_(std::move(plan.choice)),
-          question_(std::move(plan.question)),
+          common_(std::move(plan.common)),
           plan_(std::move(plan.library)) {}
 
     Diagnosis run() {
@@ -81,7 +81,7 @@ public:
         if (builder->decision().verdict == Verdict::not_converged)
             refinements_.push_back(refinement_of(*builder, max_refinement));
         evidence.finer_baseline =
-            mean_over_packings(observe_trials(device_, question_, finer_baseline_trials(plan_), store_,
+            mean_over_packings(observe_trials(device_, common_, finer_baseline_trials(plan_), store_,
                                               stage(options_, "half the noise")),
                                packings());
         options_.on_evidence(evidence);
@@ -110,18 +110,18 @@ private:
         if (ready) {  // before any other work
             evidence.library = read_library(*options_.library);
             expect_origin(evidence.library,
-                          library_origin(question_, model(), plan_.specimens.front().packing.size()),
+                          library_origin(common_, model(), plan_.packings.front().packing.size()),
                           *options_.library);
-            expect_library_of(evidence.library, question_.grid, plan_, *options_.library);
+            expect_library_of(evidence.library, common_.grid, plan_, *options_.library);
         }
         if (paper_metrics())  // first, because trials with complete recordings are not simulated again
             recorded(baseline_trials(plan_), options_.replicates);
         if (ready) {
-            question_.grid = evidence.library.grid;
+            common_.grid = evidence.library.grid;
             take_baseline(evidence, simulated_baseline("baseline"));
             expect_alike_loads(evidence.library, evidence.baseline, *options_.library);
         } else {
-            evidence.library = build_library(device_, question_, plan_, store_, library_stage("library"));
+            evidence.library = build_library(device_, common_, plan_, store_, library_stage("library"));
             library_is_own_ = true;
             take_baseline(evidence, evidence.library.baseline);
             if (options_.library && !write_library(*options_.library, evidence.library))
@@ -143,7 +143,7 @@ private:
     }
 
     Eigen::MatrixXd simulated_baseline(const std::string& name) {
-        return observe_trials(device_, question_, baseline_trials(plan_), store_, library_stage(name));
+        return observe_trials(device_, common_, baseline_trials(plan_), store_, library_stage(name));
     }
 
     /// A stage of trials of the library, whose first ones are the baseline.
@@ -163,7 +163,7 @@ private:
         for (std::size_t p = 0; p < experiments_.size(); ++p)
             evidence.packings.push_back(
                 {experiments_[p].name,
-                 observe(experiments_[p].recording, question_.grid, question_.material, question_.discard),
+                 observe(experiments_[p].recording, common_.grid, common_.material, common_.discard),
                  runs.middleRows(static_cast<Eigen::Index>(p) * plan_.replicates, plan_.replicates)});
         take_means(evidence);
         if (experiments_.size() == 1) evidence.packings.clear();
@@ -176,7 +176,7 @@ private:
     Refinement refinement_of(const DiagnosisBuilder& builder, double most) {
         const std::size_t candidate = builder.decision().group.front();
         const Effect& effect = *find_effect(builder.findings().names[candidate]);
-        const NumericalSetting setting = effect.settings(plan_.specimens.front().model).front();
+        const NumericalSetting setting = effect.settings(plan_.packings.front().model).front();
         return {std::string(effect.name),
                 std::string(setting.key),
                 std::string(find_key(setting.key)->unit),
@@ -189,8 +189,8 @@ private:
     /// is simulated again.
     void refine(Evidence& evidence, Refinement refinement) {
         const Effect& effect = *find_effect(refinement.effect);
-        for (Specimen& specimen : plan_.specimens)
-            for (const NumericalSetting& setting : effect.settings(specimen.model))
+        for (LibraryPacking& packing : plan_.packings)
+            for (const NumericalSetting& setting : effect.settings(packing.model))
                 *setting.value *= refinement.to / refinement.from;
         refinement.done = true;
         refinements_.push_back(refinement);
@@ -220,7 +220,7 @@ private:
             fmt::format("there is a gap, and experiment.toml states how the plate moves: continuing with "
                         "that motion ({})",
                         settings));
-        for (Specimen& specimen : plan_.specimens) apply(specimen.model.replica, motion);
+        for (LibraryPacking& packing : plan_.packings) apply(packing.model.replica, motion);
         if (evidence.candidates.size() > 1)
             std::erase_if(evidence.candidates, [](const auto& c) { return c.name == "plate_speed"; });
         take_baseline(evidence, simulated_baseline("baseline with the experiment's plate"));
@@ -248,7 +248,7 @@ private:
             const std::vector<Trial> trials = held_out_trials(builder, *k);
             if (paper_metrics()) recorded(trials, options_.confirmations);
             const Eigen::MatrixXd runs =
-                observe_trials(device_, question_, trials, store_, stage(options_, "held-out confirmation"));
+                observe_trials(device_, common_, trials, store_, stage(options_, "held-out confirmation"));
             builder.confirm_held_out(*k, mean_over_packings(runs, packings()));
         }
     }
@@ -258,7 +258,7 @@ private:
         for (const std::size_t k : proposals)
             append(trials, trials_of(builder, builder.findings().proposals[k], builder.whole_fit(k)));
         const Eigen::MatrixXd runs =
-            observe_trials(device_, question_, trials, store_, stage(options_, "confirmation"));
+            observe_trials(device_, common_, trials, store_, stage(options_, "confirmation"));
         const Eigen::Index each = options_.confirmations * packings();
         for (std::size_t k = 0; k < proposals.size(); ++k)
             builder.confirm(
@@ -276,12 +276,12 @@ private:
             return builder.data().name(findings.proposals[proposal].candidates.front());
         };
         const bool slower = depends_on_speed(name_of(builder.decided())) || depends_on_speed(name_of(*rival));
-        for (const OtherProtocol& protocol : other_protocols(question_, model().replica, slower)) {
+        for (const OtherProtocol& protocol : other_protocols(common_, model().replica, slower)) {
             const auto runs_of = [&](std::size_t proposal) {
                 std::vector<Trial> trials =
                     trials_of(builder, findings.proposals[proposal], builder.whole_fit(proposal));
                 for (Trial& trial : trials) protocol.change(trial.model.replica);
-                return mean_over_packings(observe_trials(device_, protocol.question, trials, store_,
+                return mean_over_packings(observe_trials(device_, protocol.common, trials, store_,
                                                          stage(options_, "other protocols")),
                                           packings());
             };
@@ -295,8 +295,8 @@ private:
     /// Of the first packing.
     BeforeAfter before_after(const DiagnosisBuilder& builder) {
         const int few = std::min(options_.replicates, options_.confirmations);
-        return {kept_recordings(device_, question_, recorded(baseline_trials(plan_), few), store_),
-                kept_recordings(device_, question_,
+        return {kept_recordings(device_, common_, recorded(baseline_trials(plan_), few), store_),
+                kept_recordings(device_, common_,
                                 recorded(held_out_trials(builder, builder.decided()), options_.confirmations),
                                 store_)};
     }
@@ -305,7 +305,7 @@ private:
     std::vector<Trial> recorded(std::vector<Trial> trials, int of_a_packing) const {
         trials.resize(std::min(static_cast<std::size_t>(of_a_packing), trials_recorded));
         keep_recordings(trials);
-        observe_trials(device_, question_, trials, store_, stage(options_, "recordings"));
+        observe_trials(device_, common_, trials, store_, stage(options_, "recordings"));
         return trials;
     }
 
@@ -317,8 +317,8 @@ private:
                                  const PartialFit& fit) const {
         LibraryPlan plan = plan_;
         plan.replicates = options_.confirmations;
-        for (Specimen& specimen : plan.specimens)
-            specimen.model = fitted(specimen.model, builder.data(), proposal, fit);
+        for (LibraryPacking& packing : plan.packings)
+            packing.model = fitted(packing.model, builder.data(), proposal, fit);
         return baseline_trials(plan);
     }
 
@@ -345,7 +345,7 @@ private:
     bool paper_metrics() const { return options_.paper_metrics && model().replica.programme.empty(); }
 
     /// The model of the first packing.
-    const Model& model() const { return plan_.specimens.front().model; }
+    const Model& model() const { return plan_.packings.front().model; }
     int packings() const { return static_cast<int>(experiments_.size()); }
 
     Device& device_;
@@ -353,7 +353,7 @@ private:
     const DiagnoseOptions& options_;
     ObservationStore store_;
     CandidateChoice choice_;
-    Question question_;
+    TrialSettings common_;
     LibraryPlan plan_;
     bool library_is_own_ = false;  ///< computed on the experiment's own packings
     std::vector<Refinement> refinements_;

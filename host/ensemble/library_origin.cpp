@@ -59,11 +59,11 @@ std::string observables_digest() {
 
 }  // namespace
 
-std::map<std::string, std::string> library_origin(const Question& question, const Model& model,
+std::map<std::string, std::string> library_origin(const TrialSettings& common, const Model& model,
                                                   std::size_t grains) {
     std::map<std::string, std::string> origin;
     Settings settings;
-    settings.run = question.scene;
+    settings.run = common.scene;
     settings.replica = model.replica;
     for (const Key& key : keys())
         if ((key.scope == Scope::replica && !key.name.starts_with("packing.")) ||
@@ -79,8 +79,8 @@ std::map<std::string, std::string> library_origin(const Question& question, cons
     origin["grains"] = fmt::format("{}", grains);
     origin["kernels"] = Sha256().add(program_text()).hex();
     origin["observables"] = observables_digest();
-    origin["program"] = question.program.substr(
-        0, question.program.find(' '));  // only the version; a commit need not change results
+    origin["program"] = common.program.substr(
+        0, common.program.find(' '));  // only the version; a commit need not change results
     return origin;
 }
 
@@ -101,9 +101,8 @@ void expect_origin(const Library& library, const std::map<std::string, std::stri
     }
     if (problems.empty()) return;
     problems.push_back(
-        "what it was made for may decide the verdict: give another file for --library, which is made where "
-        "it is "
-        "missing, or the scene and experiment that this one was made with");
+        "these differences may change the verdict: give another file name for --library; it is created if "
+        "missing. Or use the scene and experiment that this library was made with");
     throw InputError(problems);
 }
 
@@ -113,8 +112,8 @@ void expect_library_of(const Library& library, const Grid& grid, const LibraryPl
     const auto expect = [&](const std::vector<Signature>& list, const std::string& name) {
         if (std::ranges::find(list, name, &Signature::name) == list.end())
             problems.push_back(fmt::format(
-                "{}: has no signature of {}: give another file, which is made where it is missing, or leave "
-                "{} out of --candidates",
+                "{}: has no signature of {}: give another file name; it is created if missing. Or leave {} "
+                "out of --candidates",
                 file.string(), name, name));
     };
     for (const std::string& name : plan.candidates) expect(library.effects, name);
@@ -153,7 +152,7 @@ void expect_alike_loads(const Library& library, const Eigen::MatrixXd& baseline,
     throw InputError(
         fmt::format("{}: at the same displacements the scene carries {:.2f} times the load on this "
                     "experiment's packing that it "
-                    "carries on the library's packings, and effects act otherwise there: leave out "
+                    "carries on the library's packings, so the effects differ: leave out "
                     "--library, or give another "
                     "file, made where the plate starts as near to the grains",
                     file.string(), times));

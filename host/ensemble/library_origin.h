@@ -10,7 +10,7 @@ namespace mcdem::inline ensemble {
 
 /// Everything that signatures and scatter depend on, by name: keys of the scene, stated errors of the
 /// instrument, sizes of grains, kernels, program version and observables.
-std::map<std::string, std::string> library_origin(const Question& question, const Model& model,
+std::map<std::string, std::string> library_origin(const TrialSettings& common, const Model& model,
                                                   std::size_t grains);
 
 /// Throws InputError with all differences between the origin of the library in `file` and `needed`, with both

@@ -55,7 +55,7 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     model.replica.programme = programme_of(recording.parameters);
     if (model.replica.programme.empty() && !scene.replicas.front().programme.empty())
         throw InputError(fmt::format(
-            "{}: experiment.toml must state the [[programme]] that it was taken through, and plate.csv its "
+            "{}: experiment.toml must state the [[programme]] of the experiment, and plate.csv its "
             "time_s, for a scene that has one",
             experiment.name));
     // A scan before the stroke is not one of its levels, even if the plate's zero is slightly wrong.

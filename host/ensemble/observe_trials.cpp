@@ -25,9 +25,9 @@ constexpr std::size_t max_grains_at_once = 32'768;
 constexpr std::size_t max_grains_of_a_part = 8'192;  // less, so that every process gets some
 
 /// What the simulation of a trial is made of.
-std::string simulation_name(const std::string& device, const Question& question, const Trial& trial) {
+std::string simulation_name(const std::string& device, const TrialSettings& common, const Trial& trial) {
     Sha256 digest;
-    digest.add(question.program).add(device).add(name(question.scene.precision));
+    digest.add(common.program).add(device).add(name(common.scene.precision));
     Settings settings;
     settings.replica = trial.model.replica;
     for (const Key& key : keys())
@@ -49,12 +49,12 @@ auto members_of(const Numbers& numbers) {
     return std::bit_cast<std::array<double, sizeof(Numbers) / sizeof(double)>>(numbers);
 }
 
-std::string observation_name(const std::string& simulation, const Question& question,
+std::string observation_name(const std::string& simulation, const TrialSettings& common,
                              const Instrument& instrument) {
-    const Grid& grid = question.grid;
-    const double widths[] = {grid.width, grid.force_width, static_cast<double>(question.discard)};
+    const Grid& grid = common.grid;
+    const double widths[] = {grid.width, grid.force_width, static_cast<double>(common.discard)};
     Sha256 digest;
-    digest.add(simulation).add(members_of(instrument)).add(members_of(question.material)).add(widths);
+    digest.add(simulation).add(members_of(instrument)).add(members_of(common.material)).add(widths);
     digest.add(grid.displacement).add(grid.force);
     for (const HoldScans& hold : grid.holds)
         digest.add(fmt::format("{}-{}-{} at {};", hold.begin, hold.first, hold.end, hold.displacement));
@@ -102,22 +102,22 @@ std::vector<std::size_t> numbers_of(const std::vector<Trial>& trials) {
 
 class Work {
 public:
-    Work(Device& device, const Question& question, const std::vector<Trial>& trials,
+    Work(Device& device, const TrialSettings& common, const std::vector<Trial>& trials,
          const ObservationStore& store, const TrialOptions& options)
         : device_(device),
-          question_(question),
+          common_(common),
           trials_(trials),
           store_(store),
           options_(options),
           names_(trials.size()),
           result_(Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(trials.size()),
-                                            static_cast<Eigen::Index>(cells_of(question.grid).size()),
+                                            static_cast<Eigen::Index>(cells_of(common.grid).size()),
                                             not_available)) {}
 
     Eigen::MatrixXd all() {
         for (std::size_t t = 0; t < trials_.size(); ++t) {
-            simulations_.push_back(simulation_name(device_.description(), question_, trials_[t]));
-            names_[t] = observation_name(simulations_[t], question_, trials_[t].model.instrument);
+            simulations_.push_back(simulation_name(device_.description(), common_, trials_[t]));
+            names_[t] = observation_name(simulations_[t], common_, trials_[t].model.instrument);
         }
         simulate_missing();
         return std::move(result_);
@@ -150,7 +150,7 @@ private:
     }
 
     void run(const std::vector<Job>& jobs, double from, double to) {
-        Scene batch = question_.scene;
+        Scene batch = common_.scene;
         batch.output.positions = batch.output.contacts = true;
         batch.replicas.clear();
         std::vector<Packing> packings;
@@ -191,7 +191,7 @@ private:
         if (!replica.programme.empty()) return false;  // its plate may come back
         const Scan& last = recording.scans.back();
         if (last.phase != Phase::unload || last.cycle + 1 < replica.protocol.cycles) return false;
-        const double left = std::ranges::min(question_.grid.displacement) - question_.grid.width;
+        const double left = std::ranges::min(common_.grid.displacement) - common_.grid.width;
         return std::ranges::all_of(job, [&](std::size_t t) {
             const double offset = trials_[t].model.instrument.strain_offset;
             return !trials_[t].keep_recording && recording.displacement(last) + std::abs(offset) < left;
@@ -215,12 +215,12 @@ private:
         Recording seen = measured(truth, trials_[t].model.instrument, trials_[t].seed);
         if (!truth.failure)
             result_.row(static_cast<Eigen::Index>(t)) =
-                observe(seen, question_.grid, question_.material, question_.discard);
+                observe(seen, common_.grid, common_.material, common_.discard);
         if (trials_[t].keep_recording) kept = std::move(seen);
     }
 
     Device& device_;
-    const Question& question_;
+    const TrialSettings& common_;
     const std::vector<Trial>& trials_;
     const ObservationStore& store_;
     const TrialOptions& options_;
@@ -230,14 +230,15 @@ private:
 
 }  // namespace
 
-Eigen::MatrixXd observe_trials(Device& device, const Question& question, const std::vector<Trial>& trials,
+Eigen::MatrixXd observe_trials(Device& device, const TrialSettings& common, const std::vector<Trial>& trials,
                                const ObservationStore& store, const TrialOptions& options) {
-    return Work(device, question, trials, store, options).all();
+    return Work(device, common, trials, store, options).all();
 }
 
-std::vector<std::vector<Trial>> parts_of_trials(const Question& question, const std::vector<Trial>& trials) {
+std::vector<std::vector<Trial>> parts_of_trials(const TrialSettings& common,
+                                                const std::vector<Trial>& trials) {
     std::vector<std::string> simulations;
-    for (const Trial& trial : trials) simulations.push_back(simulation_name("", question, trial));
+    for (const Trial& trial : trials) simulations.push_back(simulation_name("", common, trial));
     std::vector<std::vector<Trial>> parts;
     for (const auto& batch :
          batches_of(jobs_of(numbers_of(trials), simulations), trials, max_grains_of_a_part)) {
@@ -248,21 +249,21 @@ std::vector<std::vector<Trial>> parts_of_trials(const Question& question, const 
     return parts;
 }
 
-bool are_observed(const std::string& device, const Question& question, const std::vector<Trial>& trials,
+bool are_observed(const std::string& device, const TrialSettings& common, const std::vector<Trial>& trials,
                   const ObservationStore& store) {
     return std::ranges::all_of(trials, [&](const Trial& trial) {
         const std::string name =
-            observation_name(simulation_name(device, question, trial), question, trial.model.instrument);
+            observation_name(simulation_name(device, common, trial), common, trial.model.instrument);
         return store.find(name) && (!trial.keep_recording || store.has_recording(name));
     });
 }
 
-std::vector<Recording> kept_recordings(const Device& device, const Question& question,
+std::vector<Recording> kept_recordings(const Device& device, const TrialSettings& common,
                                        const std::vector<Trial>& trials, const ObservationStore& store) {
     std::vector<Recording> recordings;
     for (const Trial& trial : trials)
         recordings.push_back(store.recording(observation_name(
-            simulation_name(device.description(), question, trial), question, trial.model.instrument)));
+            simulation_name(device.description(), common, trial), common, trial.model.instrument)));
     return recordings;
 }
 

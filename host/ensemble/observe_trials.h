@@ -25,7 +25,7 @@ struct Trial {
 };
 
 /// Common settings of all trials.
-struct Question {
+struct TrialSettings {
     Scene scene;  ///< precision and slots; its replicas are ignored
     Grid grid;
     ReferenceMaterial material;
@@ -43,19 +43,20 @@ struct TrialOptions {
 /// Row: trial, column: cell; NaN if a simulation failed. Trials that differ only in the instrument share a
 /// simulation, and results in the store are reused. Results are stored as they are computed. Throws
 /// Interrupted if stop_wanted returns true.
-Eigen::MatrixXd observe_trials(Device& device, const Question& question, const std::vector<Trial>& trials,
+Eigen::MatrixXd observe_trials(Device& device, const TrialSettings& common, const std::vector<Trial>& trials,
                                const ObservationStore& store, const TrialOptions& options);
 
 /// Divides the trials into parts that can be simulated separately; the division does not depend on the
 /// device. Trials that share a simulation are in the same part.
-std::vector<std::vector<Trial>> parts_of_trials(const Question& question, const std::vector<Trial>& trials);
+std::vector<std::vector<Trial>> parts_of_trials(const TrialSettings& common,
+                                                const std::vector<Trial>& trials);
 
 /// Whether the store contains the observations of all these trials for this device.
-bool are_observed(const std::string& device, const Question& question, const std::vector<Trial>& trials,
+bool are_observed(const std::string& device, const TrialSettings& common, const std::vector<Trial>& trials,
                   const ObservationStore& store);
 
 /// Recordings of trials that were observed with keep_recording.
-std::vector<Recording> kept_recordings(const Device& device, const Question& question,
+std::vector<Recording> kept_recordings(const Device& device, const TrialSettings& common,
                                        const std::vector<Trial>& trials, const ObservationStore& store);
 
 /// Material for the evaluation of observations: that of the model.

@@ -38,15 +38,15 @@ Grid with_hold(Grid grid, const Replica& replica) {
 
 }  // namespace
 
-std::vector<OtherProtocol> other_protocols(const Question& question, const Replica& replica, bool slower) {
+std::vector<OtherProtocol> other_protocols(const TrialSettings& common, const Replica& replica, bool slower) {
     if (!replica.programme.empty()) return {};
-    Question held = question;
-    held.grid = with_hold(question.grid, replica);
+    TrialSettings held = common;
+    held.grid = with_hold(common.grid, replica);
     held.discard = 0;
     std::vector<OtherProtocol> all{
         {fmt::format("hold the plate at full stroke for {:g} s", held_for(replica)), held, hold},
-        {"press one more cycle", question, [](Replica& changed) { ++changed.protocol.cycles; }}};
-    if (slower) all.push_back({fmt::format("press {:g} times slower", times_slower), question, slow_down});
+        {"press one more cycle", common, [](Replica& changed) { ++changed.protocol.cycles; }}};
+    if (slower) all.push_back({fmt::format("press {:g} times slower", times_slower), common, slow_down});
     return all;
 }
 

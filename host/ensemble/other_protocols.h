@@ -6,12 +6,12 @@ namespace mcdem::inline ensemble {
 
 struct OtherProtocol {
     std::string what;  ///< "hold the plate at full stroke for 0.3 s"
-    Question question;
+    TrialSettings common;
     void (*change)(Replica&);  ///< to its protocol
 };
 
 /// A hold at full stroke and one more cycle, and for effects that depend on the rate a slower plate; none if
 /// the replica has a programme.
-std::vector<OtherProtocol> other_protocols(const Question& question, const Replica& replica, bool slower);
+std::vector<OtherProtocol> other_protocols(const TrialSettings& common, const Replica& replica, bool slower);
 
 }  // namespace mcdem::ensemble

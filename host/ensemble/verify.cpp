@@ -51,8 +51,7 @@ std::vector<fs::path> sorted_files(const fs::path& folder) {
 std::string check_result_file(const fs::path& file) {
     read_run(file);
     const ResultFile result(file);
-    if (!result.has_digests())
-        return "it carries no digests: the program that wrote it kept none; all of it can be read";
+    if (!result.has_digests()) return "it has no digests: written by an older version; all of it can be read";
     result.expect_whole();
     return "";
 }

@@ -80,7 +80,7 @@ void check_jumps(const Recording& recording, Findings& findings) {
         before = &scan;
     }
     findings.odd(grains_file, tally,
-                 "grains jump by most of a diameter from frame to frame, are they numbered alike? ");
+                 "grains jump by most of a diameter from frame to frame, are they numbered consistently? ");
 }
 
 }  // namespace

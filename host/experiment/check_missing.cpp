@@ -33,7 +33,7 @@ void missing_frames(const Recording& recording, Findings& findings) {
         if (const long frames = of_phase[static_cast<int>(phase)]; frames > 0 && frames < min_frames)
             findings.missing(
                 plate_file,
-                "frames of {}ing, there are only {}: at which displacement a gap opens cannot be told",
+                "frames of {}ing, there are only {}: the displacement at which a gap opens cannot be determined",
                 name(phase), frames);
     const Scan& first = recording.scans.front();
     if (recording.displacement(first) > rest * stroke)
@@ -46,11 +46,12 @@ void missing_frames(const Recording& recording, Findings& findings) {
 
 void missing_positions(const Recording& recording, Findings& findings) {
     if (recording.diameter.empty())
-        return findings.missing(grains_file,
-                                "diameters and positions: a diagnosis must start from the positions of frame "
-                                "0, and other simulations start from a generated packing. Without them it is "
-                                "not known which overlap belongs to which force, which tells stiffness, "
-                                "cross-contact effects and adhesion apart");
+        return findings.missing(
+            grains_file,
+            "diameters and positions: a diagnosis must start from the positions of frame "
+            "0, and other simulations start from a generated packing. Without them no "
+            "overlap can be assigned to a force, which is needed to distinguish stiffness, "
+            "cross-contact effects and adhesion");
     const auto without = [](const Scan& scan) { return scan.position.empty(); };
     const auto scans = std::ranges::count_if(recording.scans, without);
     if (scans > 0)
@@ -82,12 +83,12 @@ void missing_contacts(const Recording& recording, Findings& findings) {
     }
     const auto frames = static_cast<long>(recording.scans.size());
     if (std::ranges::all_of(recording.scans, [](const Scan& scan) { return scan.contacts.empty(); }))
-        return findings.missing(contacts_file,
-                                "contact forces: of the packing only the top force is left, on which "
-                                "stiffness, cross-contact effects "
-                                "and an offset of the plate look alike; friction, adhesion, scatter among "
-                                "the grains, buoyancy and "
-                                "tilt leave hardly a trace there");
+        return findings.missing(
+            contacts_file,
+            "contact forces: of the packing only the top force is left, on which "
+            "stiffness, cross-contact effects and an offset of the plate have similar "
+            "effects; friction, adhesion, scatter among the grains, buoyancy and tilt have "
+            "little influence on it");
     if (empty > 0)
         findings.missing(contacts_file,
                          "contacts in {} of {} frames under load: forces are compared in the others only",

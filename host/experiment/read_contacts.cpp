@@ -112,9 +112,10 @@ private:
                             box.size_x, box.size_y, contact.point.x(), contact.point.y(), contact.point.z()));
         if (contact.force.norm() > largest_force_)
             table_.problem_once(
-                "force", fmt::format("fx_N, fy_N and fz_N must be in newtons: {} is more than grains of this "
-                                     "stiffness bear; divide by 1000 if it is in millinewtons",
-                                     contact.force.norm()));
+                "force",
+                fmt::format("fx_N, fy_N and fz_N must be in newtons: {} is more than such grains can "
+                            "carry; divide by 1000 if it is in millinewtons",
+                            contact.force.norm()));
     }
 
     Table& table_;

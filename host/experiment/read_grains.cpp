@@ -65,7 +65,7 @@ private:
                 "position",
                 fmt::format("centres must lie in the {} below the plate at {} m, got {}, {}, {} m: "
                             "divide by 1000 if they are in millimetres, shift them if the origin is "
-                            "elsewhere, and see that frames count alike in plate.csv",
+                            "elsewhere, and check that frames are numbered consistently with plate.csv",
                             container_words(box), plate_z, row.position.x(), row.position.y(),
                             row.position.z()));
     }

@@ -26,8 +26,8 @@ Key own_key(std::string_view name, const Range& range, std::string_view unit) {
     return {name, MemberOf<double>(nullptr), unit, range, Scope::run, {}};
 }
 
-constexpr std::size_t longest_key = 1000;  // in --set
-constexpr double largest_box = 20;         // [m]; a larger one was given in millimetres
+constexpr std::size_t max_key_length = 1000;  // in --set
+constexpr double largest_box = 20;            // [m]; a larger one was given in millimetres
 
 class Reader {
 public:
@@ -222,7 +222,7 @@ void override_key(toml::table& root, const std::string& word, FileProblems& prob
     const auto equals = word.find('=');
     std::string_view path = std::string_view(word).substr(0, std::min(equals, word.size()));
     if (equals == word.npos || path.empty() || path.front() == '.' || path.back() == '.' ||
-        path.find("..") != path.npos || path.size() > longest_key)
+        path.find("..") != path.npos || path.size() > max_key_length)
         return problems.add("--set", fmt::format("must be KEY=VALUE such as box.size=[0.165,0.166], got {}",
                                                  quoted(std::string_view(word))));
     const std::string text = word.substr(equals + 1);

@@ -16,8 +16,7 @@ constexpr double max_bytes_per_byte = 1100;
 constexpr double small_table = 1 << 20;
 constexpr const char* digests_object = "/digests";
 constexpr const char* elsewhere =
-    ": lies outside this file, and is not followed: no file of this program is like that; take one that "
-    "holds all its data itself";
+    ": lies outside this file: mcdem never writes external links; use a file that contains all its data";
 
 /// Must be the first call: disables the library's cleanup at exit. Every file is closed by its owner. A file
 /// whose disk was full remains half closed, and the library would crash when it tries again.

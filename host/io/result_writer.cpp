@@ -213,8 +213,8 @@ void write_result_file(const std::filesystem::path& file, const Run& run,
         try {
             ResultFile(out.temporary()).expect_whole(look);
         } catch (const InputError& error) {
-            throw RunError(fmt::format("{}: what was written is not what is read back: {}", file.string(),
-                                       error.what()));
+            throw RunError(fmt::format("{}: the file read back differs from the data written: {}",
+                                       file.string(), error.what()));
         }
     });
 }

@@ -16,8 +16,7 @@ auto guarded(const std::filesystem::path& file, Read read) {
     try {
         return read();
     } catch (const std::bad_alloc&) {
-        throw RunError(file.string() +
-                       ": needs more memory than there is; read it scan by scan, or on a larger machine");
+        throw RunError(file.string() + ": not enough memory; read it scan by scan, or on a larger machine");
     } catch (const std::length_error&) {
         throw InputError(file.string() + ": claims an impossible size; the file is damaged");
     }

@@ -84,7 +84,7 @@ void bind_comparison(py::module_& module) {
     module.def(
         "compare", &compare_run, py::arg("run").none(false), py::arg("reference"), py::kw_only(),
         py::arg("setting") = "", py::arg("discard") = 0, py::arg("touch_force") = py::none(),
-        "The paper's metrics of every setting of a run against a reference, a dict a setting, as `mcdem "
+        "The paper's metrics of every setting of a run against a reference, one dict per setting, as `mcdem "
         "compare`\nprints them: Rtop, errf [N], errZ, bhat and tau [N] with standard errors, None where not "
         "known.\n`reference`: a run, a result folder, or the folder of an experiment; `setting` chooses one "
         "of a run's.");

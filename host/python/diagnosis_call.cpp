@@ -103,24 +103,26 @@ void bind_diagnosis(py::module_& module) {
                py::arg("pairs") = 8, py::arg("confirmations") = 8, py::arg("refine") = 4.0,
                py::arg("seed") = 1, py::arg("library") = py::none(), py::arg("device") = "",
                py::arg("page") = true, py::arg("progress") = py::none(),
-               "Where a scene and an experiment part, and which effect is to blame: what diagnosis.json "
-               "says, as a dict.\n`experiment`: a folder, or a list of those of several packings, which "
+               "Where a scene and an experiment differ, and which effect is consistent with the difference: "
+               "the contents of diagnosis.json as a dict.\n`experiment`: a folder, or a list of those of "
+               "several packings, which "
                "are diagnosed together. `refine`: the largest factor by which a scene that is not converged "
                "is refined, "
                "1: not at all.\n\n"
                "Writes diagnosis.json and, with `page`, diagnosis.html into `folder`, as `mcdem diagnose` "
                "does; simulations "
-               "are\nkept there, so that the same call goes on where Ctrl-C ended it. `progress(stage, "
-               "fraction)` is called as "
-               "it\ngoes. host/report/DIAGNOSIS_OUTPUT.md explains the keys.");
+               "are\nkept there, so that the same call continues after an interruption by Ctrl-C. "
+               "`progress(stage, fraction)` is called\nrepeatedly. host/report/DIAGNOSIS_OUTPUT.md explains "
+               "the keys.");
     module.def(
         "converge", &converge, py::arg("scene"), py::arg("folder"), py::kw_only(), py::arg("replicas") = 32,
         py::arg("force_limit") = ConvergenceLimits{}.force,
         py::arg("sd_limit") = ConvergenceLimits{}.deviations, py::arg("jitter") = 0.0, py::arg("seed") = 1,
         py::arg("device") = "", py::arg("progress") = py::none(),
-        "What plate speed, inertia, time step, settling, precision and list margin do to the observables of "
+        "How plate speed, inertia, time step, settling, precision and list margin change the observables of "
         "a\n"
-        "scene's first replica: what convergence.json says, as a dict. `mcdem converge --help` says how.");
+        "scene's first replica: the contents of convergence.json as a dict. `mcdem converge --help` explains "
+        "the method.");
 }
 
 }  // namespace mcdem::python

@@ -208,9 +208,9 @@ void bind_single_scans(py::class_<OneRecording>& recording) {
 void bind_recording(py::module_& module) {
     py::class_<OneRecording> recording(
         module, "Recording",
-        "One packing taken through its protocol: S scans of N grains.\n\n"
-        "Arrays are the recording's own memory: read-only, not copied, and good for as "
-        "long as one of them is held.");
+        "One packing simulated through its protocol: S scans of N grains.\n\n"
+        "Arrays are the recording's own memory: read-only, not copied, and valid "
+        "while a reference to one of them exists.");
     bind_scan_arrays(recording);
     bind_single_scans(recording);
     recording.def_property_readonly("label", [](const OneRecording& self) { return self.get().label; })
@@ -223,9 +223,8 @@ void bind_recording(py::module_& module) {
             "Size along x and y [m]; of a cylinder its diameter, twice.")
         .def_property_readonly(
             "container", [](const OneRecording& self) { return std::string(name(self.get().box.shape)); },
-            "\"box\", \"cylinder\", \"periodic\" or \"cell\". Its walls: the side of a cylinder is x_min, "
-            "and "
-            "what is not there carries no force; those of a cell are its faces.")
+            "\"box\", \"cylinder\", \"periodic\" or \"cell\". Its walls: the side of a cylinder is x_min; "
+            "missing walls have zero force; those of a cell are its faces.")
         .def_property_readonly(
             "plate_start", [](const OneRecording& self) { return self.get().plate_start; },
             "Plate position that counts as displacement zero [m].")
@@ -248,7 +247,7 @@ void bind_recording(py::module_& module) {
 void bind_results(py::module_& module) {
     bind_failure(module);
     bind_recording(module);
-    py::class_<Run, SharedRun>(module, "Run", "Recordings, one a replica, by number or label.")
+    py::class_<Run, SharedRun>(module, "Run", "Recordings, one per replica, by number or label.")
         .def_readonly("name", &Run::name)
         .def_readonly("scene", &Run::scene, "The scene's TOML text, with what was overridden.")
         .def_readonly("program", &Run::program, "Version and commit.")

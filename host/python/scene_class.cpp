@@ -90,7 +90,7 @@ void bind_scene(py::module_& module) {
             "A scene from TOML text. Packing files are relative to the working folder.")
         .def_readonly("name", &Scene::name, "What results are called.")
         .def_readonly("text", &Scene::text, "TOML, with what was overridden: what results keep.")
-        .def_property_readonly("labels", &labels, "What sets each replica apart; [replicas].")
+        .def_property_readonly("labels", &labels, "Label of each replica; [replicas].")
         .def_property_readonly("parameters", &parameters,
                                "Every key and its value, by replica; None where the key does not apply.")
         .def("__len__", [](const Scene& scene) { return scene.replicas.size(); })

@@ -42,7 +42,7 @@ void expect_one_alive(const Run& run) {
         if (!causes.empty()) causes += '\n';
         causes += failure_text(recording.label, *recording.failure);
     }
-    if (!causes.empty()) throw RunError(fmt::format("no replica came to its end:\n{}", causes));
+    if (!causes.empty()) throw RunError(fmt::format("all replicas stopped early:\n{}", causes));
 }
 
 SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::object progress) {
@@ -117,8 +117,8 @@ void bind_simulation(py::module_& module) {
                "Runs a scene in memory. `progress(fraction)` is called after every round.");
     module.def("run", &run_into, py::arg("scene"), py::arg("folder"), py::kw_only(),
                py::arg("resume") = false, py::arg("device") = "", py::arg("progress") = py::none(),
-               "Runs a scene into a folder, as `mcdem run` does, and reads what it holds.\n\n"
-               "Ctrl-C and what `progress(fraction)` raises end it in good order, to be gone on with by "
+               "Runs a scene into a folder, as `mcdem run` does, and returns its results.\n\n"
+               "After Ctrl-C, or an exception of `progress(fraction)`, the run can be continued with "
                "resume=True.");
     module.def("read", &read, py::arg("path"), py::kw_only(), py::arg("what") = "everything",
                "A result folder or file. `what`: everything, positions, contacts or observables (neither).");

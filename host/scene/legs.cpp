@@ -37,8 +37,7 @@ void expect_plate(const Scene& scene, const std::string& what) {
                 what));
         if (!replica.species.empty())
             throw InputError(fmt::format(
-                "species: must be left out of a scene for {}, which knows grains of one material only",
-                what));
+                "species: must be left out of a scene for {}, which supports one material only", what));
     }
 }
 

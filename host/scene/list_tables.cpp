@@ -59,7 +59,7 @@ constexpr Range compression{-10, 0.99, Range::Low::included}, shear{-5, 5, Range
 
 // clang-format off
 const Key species_rows[] = {
-    {"name", of_species<&Species::name>, "", none, one_run, "what results and [[pair]] call it"},
+    {"name", of_species<&Species::name>, "", none, one_run, "name used in results and [[pair]]"},
     {"fraction", of_species<&Species::fraction>, "", between(0, 1), each, "fraction of the grains, in the measure packing.fractions_by; species without it share the rest equally"},
     {"youngs_modulus", of_material<&GrainMaterial::youngs_modulus>, "Pa", above_zero_to(1e13), each, "E; material keys that a species omits are taken from [grains]"},
     {"poisson_ratio", of_material<&GrainMaterial::poisson_ratio>, "", between(0, 0.5), each, "nu"},

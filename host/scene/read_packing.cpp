@@ -312,7 +312,7 @@ Packing read_packing(const std::filesystem::path& file, std::optional<long> fram
     const std::string text = read_file(file), source = file.string();
     const std::string_view beginning = std::string_view(text).substr(0, 1 << 16);
     if (beginning.starts_with("\x89HDF\r\n")) {
-        if (!read_run_packing) throw InputError(source + ": this program reads no run.h5 as a packing");
+        if (!read_run_packing) throw InputError(source + ": run.h5 cannot be read as a packing here");
         return read_run_packing(file, frame);
     }
     if (beginning.starts_with("\x1f\x8b"))

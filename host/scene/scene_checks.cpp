@@ -57,6 +57,14 @@ Found plate_in_millimetres(const Settings& settings) {
                               replica.plate.start, replica.plate.start / height));
 }
 
+/// Whether the box or the plate's start seems to be in millimetres. Checks that would then only report a
+/// consequence are skipped.
+bool seems_in_millimetres(const Settings& settings) {
+    const Box& box = settings.replica.box;
+    const double width = is_cylinder(box) ? cylinder_radius(box) : std::max(box.size_x, box.size_y);
+    return millimetres(width, settings) || plate_in_millimetres(settings);
+}
+
 /// Positions must be precise enough for overlaps of a thousandth of a radius.
 Found coarse_positions(const Settings& settings, double smallest_diameter) {
     if (settings.run.precision == Precision::double_precision) return {};
@@ -76,7 +84,7 @@ Found coarse_positions(const Settings& settings, double smallest_diameter) {
 const std::vector<Check> checks{
     {{"plate.start", "packing.count", "packing.diameter_mean", "packing.diameter_max", "packing.packing_fraction", "box.size_x", "box.size_y"}, Check::Packing::generated, plate_in_millimetres},
     {{"numerics.precision", "packing.diameter_min", "box.size_x", "box.size_y", "plate.start"}, Check::Packing::generated, [](const Settings& s) {
-        return coarse_positions(s, s.generated.diameter_min);
+        return seems_in_millimetres(s) ? Found{} : coarse_positions(s, s.generated.diameter_min);
     }},
     {{"plate.end", "plate.start"}, Check::Packing::any, [](const Settings& s) {
         const auto& plate = s.replica.plate;
@@ -184,7 +192,7 @@ const std::vector<Check> checks{
     {{"packing.packing_fraction", "packing.count", "packing.diameter_mean", "packing.diameter_sd", "packing.diameter_min",
       "packing.diameter_max", "box.size_x", "box.size_y", "plate.start"}, Check::Packing::generated, [](const Settings& s) {
         const auto& g = s.generated;
-        if (g.diameter_min > g.diameter_mean || g.diameter_max < g.diameter_mean) return Found{};
+        if (g.diameter_min > g.diameter_mean || g.diameter_max < g.diameter_mean || seems_in_millimetres(s)) return Found{};
         const double height = expected_height(g, s.replica.box, mixture_of(s.replica));
         if (height < g.diameter_max)
             return Found{fmt::format("must leave room for the largest grain, got {}: the grains would fill the box up to {:.6g} m only; "

@@ -57,7 +57,7 @@ void CompliantPlate::deflect(StepInterval& interval, double time_step, double fa
     change_ = change / interval.steps;
 }
 
-void CompliantPlate::made(const IntervalResult& result) {
+void CompliantPlate::on_interval_done(const IntervalResult& result) {
     state_.given += change_ * result.steps;
     state_.force = result.wall_force[static_cast<int>(Wall::plate)].z();
 }

@@ -21,7 +21,7 @@ public:
     /// as commanded.
     void deflect(StepInterval& interval, double time_step, double farthest);
     /// Records the force at the end of the interval.
-    void made(const IntervalResult& result);
+    void on_interval_done(const IntervalResult& result);
 
     /// Whether the deflection is right within a thousandth of itself or of `farthest` [m].
     bool arrived(double farthest) const;

@@ -275,7 +275,7 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
     if (!std::ranges::all_of(steps_made_, [](auto steps) { return steps >= 0; }))
         refuse_checkpoint("it holds a negative number of steps");
     if (!std::ranges::all_of(shortening_, [](int times) { return times >= 0 && times <= max_shortening; }))
-        refuse_checkpoint("it holds a time step that there is not");
+        refuse_checkpoint("it holds an invalid time step");
 }
 
 }  // namespace mcdem::sim

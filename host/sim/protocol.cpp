@@ -41,7 +41,7 @@ ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const P
       clearance_(scale.weight > 0 ? free_distance * scale.diameter : HUGE_VAL),
       scale_(cell_ ? 1 : plate_.start),
       time_step_(time_step),
-      longest_time_step_(time_step),
+      max_time_step_(time_step),
       quasi_static_(replica, scale),
       force_control_(ForceControl::of_plate(replica, scale)) {
     const auto lists = [](const mcdem::Stage& stage) { return !stage.scan_at.empty(); };
@@ -181,7 +181,7 @@ double ProtocolRunner::drag() const {
                           : by_stress() ? cell_->drag(state_.cell, stress())
                                         : HUGE_VAL;
     return std::min({wanted, protocol_.settle_drag,
-                     (state_.stage == Stage::relax ? max_relax_drag : max_drag) / longest_time_step_});
+                     (state_.stage == Stage::relax ? max_relax_drag : max_drag) / max_time_step_});
 }
 
 void ProtocolRunner::take_note(const IntervalResult& result) {
@@ -288,8 +288,8 @@ void ProtocolRunner::next_leg() {
     begin_leg();
 }
 
-std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult& result,
-                                                            bool plate_arrived) {
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::on_interval_done(const IntervalResult& result,
+                                                                        bool plate_arrived) {
     if (finished()) return std::nullopt;
     const double drag_before = drag();
     take_note(result);

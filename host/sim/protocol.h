@@ -67,7 +67,7 @@ public:
         bool settled;
     };
     /// Records an interval. The packing does not count as settled while the plate still moves.
-    std::optional<ScanTag> made(const IntervalResult& result, bool plate_arrived = true);
+    std::optional<ScanTag> on_interval_done(const IntervalResult& result, bool plate_arrived = true);
 
     /// Time step of the next intervals [s].
     void set_time_step(double time_step) { time_step_ = time_step; }
@@ -159,10 +159,10 @@ private:
     std::vector<Leg> legs_;
     std::vector<ScanQuantity> quantities_;  ///< of each leg, if a move of a cell lists its scans
     std::optional<CellControl> cell_;       ///< only for a cell
-    double clearance_;  ///< of a plate above grains at rest; grains without weight may be anywhere [m]
-    double scale_;      ///< scale of positions: the plate's start [m], 1 for a cell
-    double time_step_;  ///< current one [s]
-    double longest_time_step_;  ///< without shortening [s]
+    double clearance_;      ///< of a plate above grains at rest; grains without weight may be anywhere [m]
+    double scale_;          ///< scale of positions: the plate's start [m], 1 for a cell
+    double time_step_;      ///< current one [s]
+    double max_time_step_;  ///< without shortening [s]
     QuasiStatic quasi_static_;
     ForceControl force_control_;
     ProtocolState state_;

@@ -165,9 +165,9 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
 bool Simulation::take_note(int replica, const IntervalResult& result) {
     auto& runner = runners_[replica];
     const bool relaxes = runner.state().stage == ProtocolState::Stage::relax;
-    plates_[replica].made(result);
+    plates_[replica].on_interval_done(result);
     Outcome outcome{replica, result, {}, {}};
-    outcome.scan = runner.made(result, plates_[replica].arrived(engine_.max_plate_move(replica)));
+    outcome.scan = runner.on_interval_done(result, plates_[replica].arrived(engine_.max_plate_move(replica)));
     if (result.status) {
         outcome.scan.reset();
         outcome.failure = failure(replica, result, relaxes);
@@ -272,7 +272,7 @@ void Simulation::restore(const std::map<std::string, std::vector<std::byte>>& sa
         for (std::size_t r = 0; r < parts.size(); ++r) {
             std::memcpy(&state, found->second.data() + r * sizeof state, sizeof state);
             if (!parts[r].is_possible(state))
-                refuse_checkpoint("it holds a state of the plate's program that there is not");
+                refuse_checkpoint("it holds an invalid state of the plate's programme");
             parts[r].set_state(state);
         }
     };

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "challenge/realities.h"
+#include "challenge/case_simulator.h"
 #include "challenge/truth.h"
 #include "core/errors.h"
 #include "ensemble/small_scene.h"
@@ -51,8 +51,8 @@ ChallengeOptions options_for(const fs::path& folder) {
 
 Challenge drawn(Device& device, const ChallengeOptions& options) {
     const Scene scene = dense_scene();
-    const Realities realities(device, scene, options.measurement);
-    return draw_challenge(options.size, options.effects, realities.stated(), realities.nuisances(),
+    const CaseSimulator simulator(device, scene, options.measurement);
+    return draw_challenge(options.size, options.effects, simulator.stated(), simulator.nuisances(),
                           seal_of(scene.text), *options.seed);
 }
 

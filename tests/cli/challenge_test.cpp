@@ -1,4 +1,5 @@
-// A small challenge from its realities to its score: blind, sealed, without hints about the truth.
+// A small challenge from its simulated experiments to its score: blind, sealed, without hints about the
+// truth.
 #include <zlib.h>
 
 #include <map>
@@ -32,7 +33,7 @@ std::map<std::string, std::string> contents_of(const fs::path& folder) {
     return contents;
 }
 
-/// Realities and diagnoses are made once; the truth is not accessible during the diagnoses.
+/// Experiments and diagnoses are made once; the truth is not accessible during the diagnoses.
 class ChallengeTest : public testing::Test {
 protected:
     static void SetUpTestSuite() {
@@ -81,7 +82,7 @@ double plate_contacts_over_reading(const Recording& recording) {
     return contacts / reading;
 }
 
-TEST_F(ChallengeTest, RealitiesHaveTheEffectsOfTheTruth) {
+TEST_F(ChallengeTest, ExperimentsHaveTheEffectsOfTheTruth) {
     const auto truth = json_of("sealed/truth.json");
     ASSERT_EQ(truth.at("cases").size(), static_cast<std::size_t>(cases));
     for (const auto& c : truth.at("cases")) {

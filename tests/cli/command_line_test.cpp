@@ -38,9 +38,9 @@ TEST_F(CliTest, WrongOptionsAreBadInput) {
     expect_bad_input(mcdem({"run", "small.toml", "--out", "a", "--fast"}), "--fast");
     expect_bad_input(mcdem({"run", "small.toml", "--out"}), "--out");
     expect_bad_input(mcdem({"run", "--fast"}), "`mcdem run --help` tells more");
-    expect_bad_input(mcdem({"run", "small.toml", "--out", ""}), "--out: must name a place, got nothing");
+    expect_bad_input(mcdem({"run", "small.toml", "--out", ""}), "--out: must be a path, got nothing");
     expect_bad_input(mcdem({"experiment", "from-run", "a", "--out", ""}),
-                     "--out: must name a place, got nothing");
+                     "--out: must be a path, got nothing");
     expect_bad_input(mcdem({"export", "a", "--out", "b"}), "vtk, xyz or both");
     expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "a", "--rounds", "many"}), "many");
     expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "a", "--model", "hertz"}),

@@ -250,7 +250,7 @@ TEST_F(DiagnoseTest, ProgrammesOfSceneAndExperimentMustAgree) {
     fs::copy_file(fs::path(MCDEM_SOURCE_DIR) / "scenes/relaxation.toml", path("tiny.toml"),
                   fs::copy_options::overwrite_existing);
     expect_bad_input(mcdem({"diagnose", "tiny.toml", "--experiment", "e", "--out", "d"}),
-                     "experiment.toml must state the [[programme]] that it was taken through, and plate.csv");
+                     "experiment.toml must state the [[programme]] of the experiment, and plate.csv");
 }
 
 }  // namespace

@@ -366,7 +366,7 @@ TEST_F(ExperimentCommandTest, ALibraryOfAnotherSceneIsRefused) {
     expect_done(diagnose("0.03"));
     expect_done(diagnose("0.03"));
     expect_bad_input(diagnose("0.9"), "new/l.json: was made with grains.friction = 0.03, needed is 0.9");
-    EXPECT_THAT(diagnose("0.9").err, HasSubstr("give another file for --library"));
+    EXPECT_THAT(diagnose("0.9").err, HasSubstr("give another file name for --library"));
 }
 
 }  // namespace

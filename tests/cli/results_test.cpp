@@ -158,7 +158,7 @@ TEST_F(CliTest, OneFailedReplicaIsNamedAndIfAllFailItIsAFailure) {
     const auto all = mcdem(run_words("all", {"--set", "numerics.overlap_limit=0.0005"}));
     EXPECT_EQ(all.exit_code, 1);
     EXPECT_THAT(all.out, HasSubstr("0 of 2 replicas done, 2 stopped early"));
-    EXPECT_THAT(all.err, HasSubstr("mcdem: no replica came to its end"));
+    EXPECT_THAT(all.err, HasSubstr("mcdem: all replicas stopped early"));
     expect_done(mcdem({"table", "all"}));  // recorded scans stay readable
 }
 

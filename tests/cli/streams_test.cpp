@@ -122,7 +122,7 @@ public:
     }
     const std::string& first_words() const { return first_words_; }
     void take_away() { ::close(std::exchange(terminal_, -1)); }
-    int go_on() {
+    int resume() {
         int status = 0;
         ::kill(process_, SIGCONT);
         ::waitpid(std::exchange(process_, -1), &status, 0);
@@ -142,7 +142,7 @@ TEST_F(StreamsTest, AClosedTerminalDoesNotEndARun) {
         OnATerminal run(folder_.path, run_words(out));
         if (!run.hold_after_first_words()) continue;  // it was faster than this test: try again
         run.take_away();
-        const int status = run.go_on();
+        const int status = run.resume();
         EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status << " " << run.first_words();
         EXPECT_TRUE(result(out) == result("whole"));
         break;

@@ -128,7 +128,7 @@ TEST_F(AtomicFileTest, WhatIsNotARegularFileIsRefusedAtOnce) {
 TEST_F(AtomicFileTest, SystemErrorsAreNotInputErrors) {
     fs::create_symlink(folder_ / "loop", folder_ / "loop");
     EXPECT_THROW(read_file(folder_ / "loop"), RunError);
-    EXPECT_THAT(error_of_reading(folder_ / "loop"), HasSubstr("try again when the cause is gone"));
+    EXPECT_THAT(error_of_reading(folder_ / "loop"), HasSubstr("remove the cause and try again"));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ TEST(ContactResiduals, AgreeWithHertzForTwoUnequalGrains) {
     EXPECT_EQ(c.grain, 0);
     EXPECT_EQ(c.partner, 1);
     EXPECT_LT((c.normal - direction).norm(), 1e-12);
-    EXPECT_NEAR(c.push, force, 1e-12 * force);
+    EXPECT_NEAR(c.normal_force, force, 1e-12 * force);
     EXPECT_NEAR(c.reduced_radius, reduced, 1e-15);
     EXPECT_NEAR(c.implied, implied / reduced, 1e-12);
     EXPECT_NEAR(c.measured, seen / reduced, 1e-12);
@@ -68,7 +68,7 @@ TEST(ContactResiduals, AgreeWithHertzAtEveryWall) {
         const ContactResidual c = contact_residuals(grains_of({radius}), scan, material).at(0);
         EXPECT_EQ(c.normal, outward);
         EXPECT_EQ(c.reduced_radius, radius);
-        EXPECT_NEAR(c.push, force, 1e-12 * force);
+        EXPECT_NEAR(c.normal_force, force, 1e-12 * force);
         EXPECT_NEAR(c.implied, implied / radius, 1e-12);
         EXPECT_NEAR(c.measured, seen / radius, 1e-12);
     }
@@ -88,7 +88,7 @@ TEST(ContactResiduals, AgreeWithHertzAtTheSideOfACylinder) {
     scan.contacts = {{0, wall_partner(Wall::x_min), Vec3::Zero(), -0.02 * outward}};
     const ContactResidual c = contact_residuals(recording, scan, material).at(0);
     EXPECT_LT((c.normal - outward).norm(), 1e-12);
-    EXPECT_NEAR(c.push, 0.02, 1e-15);
+    EXPECT_NEAR(c.normal_force, 0.02, 1e-15);
     EXPECT_NEAR(c.reduced_radius, radius * std::sqrt(2), 1e-12);
     EXPECT_NEAR(c.measured * c.reduced_radius, seen, 1e-12);
 }
@@ -157,10 +157,10 @@ TEST(ContactResiduals, FrictionIsSeparatedAndAttractionIsNegative) {
     scan.contacts = {{0, 1, Vec3::Zero(), Vec3(0.003, 0.004, -0.02)},
                      {0, 2, Vec3::Zero(), Vec3(0, 0, -0.01)}};
     const auto c = contact_residuals(grains_of({radius, radius, radius}), scan, soft_material());
-    EXPECT_NEAR(c[0].push, 0.02, 1e-15);
+    EXPECT_NEAR(c[0].normal_force, 0.02, 1e-15);
     EXPECT_NEAR(c[0].tangential, 0.005, 1e-15);
     EXPECT_NEAR(c[0].measured, -0.0005 / 0.005, 1e-12);  // a gap
-    EXPECT_NEAR(c[1].push, -0.01, 1e-15);
+    EXPECT_NEAR(c[1].normal_force, -0.01, 1e-15);
     const double effective = 1 / (2 * compliance(20e3, 0.5));
     EXPECT_NEAR(c[1].implied, -std::pow(3 * 0.01 / (4 * effective * 0.005 * 0.005), 2.0 / 3), 1e-12);
     EXPECT_EQ(c[0].cross_contact, 0);  // attraction does not displace surfaces

@@ -21,8 +21,8 @@ TEST(DiagnosisBuilder, FindsAndMeasuresAPlantedEffect) {
     world.add_nuisance(evidence, "modulus", world.pattern(0.5), 1);
     evidence.candidates[0].unit = "J/m2";
     evidence.observed += 4 * evidence.library.effects[0].linear;
-    const DiagnosisBuilder draft(evidence, {});
-    const Diagnosis d = draft.diagnosis();
+    const DiagnosisBuilder builder(evidence, {});
+    const Diagnosis d = builder.diagnosis();
     EXPECT_EQ(d.verdict, Verdict::effect);
     ASSERT_EQ(d.causes.size(), 1u);
     EXPECT_EQ(d.causes[0].effect, "adhesion");
@@ -98,11 +98,11 @@ Diagnosis with_remainder(Chosen chosen, double left) {
     const Eigen::Index each = cells_each(evidence.observed.size());
     for (Eigen::Index i = 0; i < evidence.observed.size(); ++i)
         if (chosen(i / each, i % each)) evidence.observed[i] += (i / each % 2 ? 1 : -1) * left;
-    DiagnosisBuilder draft(evidence, {});
-    draft.confirm(0, runs_at(world, evidence, 9 * pattern));
-    while (const auto k = draft.wants_held_out())
-        draft.confirm_held_out(*k, runs_at(world, evidence, 9 * pattern));
-    return draft.diagnosis();
+    DiagnosisBuilder builder(evidence, {});
+    builder.confirm(0, runs_at(world, evidence, 9 * pattern));
+    while (const auto k = builder.wants_held_out())
+        builder.confirm_held_out(*k, runs_at(world, evidence, 9 * pattern));
+    return builder.diagnosis();
 }
 
 // Grains rearranged at one displacement of the unloading, which is held out. Differences of the same size at
@@ -156,19 +156,19 @@ TEST(DiagnosisBuilder, AParameterIsRunAgainIfItsRunsRequireALargerAmplitude) {
     world.add_effect(evidence, "adhesion", pattern);
     world.add_nuisance(evidence, "modulus", pattern, 1);
     evidence.observed += 9 * pattern;
-    DiagnosisBuilder draft(evidence, {});
-    const auto& proposals = draft.findings().proposals;
+    DiagnosisBuilder builder(evidence, {});
+    const auto& proposals = builder.findings().proposals;
     ASSERT_GE(proposals.size(), 2u);
     ASSERT_THAT(proposals[0].candidates, ElementsAre(0u));
     ASSERT_THAT(proposals[1].candidates, ElementsAre(1u));
-    draft.confirm(0, runs_at(world, evidence, 9 * pattern));
-    draft.confirm(1, runs_at(world, evidence, 7.5 * pattern + 0.6 * world.pattern(1)));
-    ASSERT_EQ(draft.decision().proposal, 0);
+    builder.confirm(0, runs_at(world, evidence, 9 * pattern));
+    builder.confirm(1, runs_at(world, evidence, 7.5 * pattern + 0.6 * world.pattern(1)));
+    ASSERT_EQ(builder.decision().proposal, 0);
     ASSERT_GT(proposals[1].best_misfit(), 0.01);
-    const double before = draft.whole_fit(1).amplitudes[0];
-    EXPECT_TRUE(draft.refit(1));
-    EXPECT_NEAR(draft.whole_fit(1).amplitudes[0] - before, 1.5, 0.5);
-    EXPECT_FALSE(draft.refit(0));
+    const double before = builder.whole_fit(1).amplitudes[0];
+    EXPECT_TRUE(builder.refit(1));
+    EXPECT_NEAR(builder.whole_fit(1).amplitudes[0] - before, 1.5, 0.5);
+    EXPECT_FALSE(builder.refit(0));
 }
 
 TEST(DiagnosisBuilder, RunsThatFailAreRepeatedWithHalfTheAmplitude) {
@@ -177,18 +177,18 @@ TEST(DiagnosisBuilder, RunsThatFailAreRepeatedWithHalfTheAmplitude) {
     const Eigen::VectorXd pattern = world.pattern(1);
     world.add_effect(evidence, "adhesion", pattern);
     evidence.observed += 9 * pattern;
-    DiagnosisBuilder draft(evidence, {});
-    const double fitted = draft.whole_fit(0).amplitudes[0];
+    DiagnosisBuilder builder(evidence, {});
+    const double fitted = builder.whole_fit(0).amplitudes[0];
     Eigen::MatrixXd failed = runs_at(world, evidence, fitted * pattern);
-    failed.col(draft.data().cells[0]).setConstant(not_available);
-    draft.confirm(0, failed);
-    EXPECT_TRUE(draft.refit(0));
-    EXPECT_DOUBLE_EQ(draft.whole_fit(0).amplitudes[0], fitted / 2);
-    draft.confirm(0, runs_at(world, evidence, fitted / 2 * pattern));
-    EXPECT_GT(draft.findings().proposals[0].amplitudes[0], 0.6 * fitted)
+    failed.col(builder.data().cells[0]).setConstant(not_available);
+    builder.confirm(0, failed);
+    EXPECT_TRUE(builder.refit(0));
+    EXPECT_DOUBLE_EQ(builder.whole_fit(0).amplitudes[0], fitted / 2);
+    builder.confirm(0, runs_at(world, evidence, fitted / 2 * pattern));
+    EXPECT_GT(builder.findings().proposals[0].amplitudes[0], 0.6 * fitted)
         << "half of the step that they require";
-    draft.confirm(0, failed);
-    EXPECT_FALSE(draft.refit(0)) << "an earlier amplitude has results";
+    builder.confirm(0, failed);
+    EXPECT_FALSE(builder.refit(0)) << "an earlier amplitude has results";
 }
 
 }  // namespace

@@ -76,19 +76,20 @@ TEST(ForceDistribution, IsCorrectForStrongForces) {
     EXPECT_NEAR(d[3], 3 / 2.0, near);  // variance 0.9 * 1 + 0.1 * 81
 }
 
-ContactResidual residual(int grain, int partner, const Vec3& normal, double push, double tangential = 0) {
+ContactResidual residual(int grain, int partner, const Vec3& normal, double normal_force,
+                         double tangential = 0) {
     ContactResidual c;
     c.grain = grain;
     c.partner = partner;
     c.normal = normal;
-    c.push = push;
+    c.normal_force = normal_force;
     c.tangential = tangential;
     return c;
 }
 
 /// A lattice at rest; its side walls exert 1 mN upwards on each grain that touches them.
 Lattice lattice_with_wall_friction(int n) {
-    constexpr double push = 0.01, carried = 0.001;
+    constexpr double normal_force = 0.01, carried = 0.001;
     Lattice lattice(n);
     std::vector<int> side_walls(lattice.scan.position.size(), 0);
     for (Contact& contact : lattice.scan.contacts)
@@ -102,7 +103,7 @@ Lattice lattice_with_wall_friction(int n) {
             continue;
         const int layers_above = n - contact.grain / (n * n) - (from_below ? 0 : 1);
         const int walls = side_walls[static_cast<std::size_t>(contact.grain)];
-        contact.force.z() = (from_below ? 1 : -1) * (push - carried * walls * layers_above);
+        contact.force.z() = (from_below ? 1 : -1) * (normal_force - carried * walls * layers_above);
     }
     return lattice;
 }
@@ -160,9 +161,11 @@ TEST(Fabric, GradientWithDepthIsFound) {
     double sum = 0, number = 0;
     for (const Contact& contact : lattice.scan.contacts) {
         const bool wall = is_wall(contact.partner);
-        const double push = wall ? 7 : 3 - 20 * contact.point.z();  // contacts with walls do not count
-        contacts.push_back(residual(contact.grain, contact.partner, -contact.force.normalized(), push));
-        if (!wall) sum += push, ++number;
+        const double normal_force =
+            wall ? 7 : 3 - 20 * contact.point.z();  // contacts with walls do not count
+        contacts.push_back(
+            residual(contact.grain, contact.partner, -contact.force.normalized(), normal_force));
+        if (!wall) sum += normal_force, ++number;
     }
     // In the lattice the contact point is half an edge from the centre, not half a diameter.
     recording.diameter.assign(recording.diameter.size(), Lattice::edge);

@@ -32,9 +32,9 @@ Evidence two_alike(SyntheticWorld& world, double apart, double amplitude) {
 TEST(NextSteps, DistinguishTheMembersOfAGroup) {
     SyntheticWorld world(6, 3);
     const Evidence evidence = two_alike(world, 0.05, 4);
-    const DiagnosisBuilder draft(evidence, {});
-    ASSERT_EQ(draft.decision().verdict, Verdict::group);
-    const Diagnosis diagnosis = draft.diagnosis();
+    const DiagnosisBuilder builder(evidence, {});
+    ASSERT_EQ(builder.decision().verdict, Verdict::group);
+    const Diagnosis diagnosis = builder.diagnosis();
     for (const Cause& cause : diagnosis.ranking)
         EXPECT_EQ(cause.group.size(), cause.effect == "modulus" ? 1u : 2u) << cause.effect;
     const auto& steps = diagnosis.next;
@@ -60,9 +60,9 @@ TEST(NextSteps, PredictedPowerIsCorrect) {
     for (int k = 0; k < drawn; ++k) {
         SyntheticWorld world(6, 900 + static_cast<std::uint64_t>(k));
         Evidence evidence = two_alike(world, 0.12, 4);
-        const DiagnosisBuilder draft(evidence, {});
-        if (draft.decision().verdict != Verdict::group) continue;
-        for (const NextStep& step : draft.diagnosis().next)
+        const DiagnosisBuilder builder(evidence, {});
+        if (builder.decision().verdict != Verdict::group) continue;
+        for (const NextStep& step : builder.diagnosis().next)
             if (step.what.find("3 more packings") != std::string::npos) {
                 predicted += *step.power;
                 ++groups;
@@ -105,10 +105,10 @@ TEST(NextSteps, PowerOfAProtocolFollowsFromRunsOfBothEffects) {
         for (int k = 0; k < drawn; ++k) {
             SyntheticWorld world(6, 70 + static_cast<std::uint64_t>(k));
             const Evidence evidence = two_alike(world, 0.05, 4);
-            const DiagnosisBuilder draft(evidence, {});
-            ASSERT_EQ(draft.decision().verdict, Verdict::group);
-            power += draft.power_of(protocol_runs(world, apart)) / drawn;
-            const double gain = draft.findings().proposals[draft.decided()].best_gain();
+            const DiagnosisBuilder builder(evidence, {});
+            ASSERT_EQ(builder.decision().verdict, Verdict::group);
+            power += builder.power_of(protocol_runs(world, apart)) / drawn;
+            const double gain = builder.findings().proposals[builder.decided()].best_gain();
             const double margin = std::max(Limits{}.group, Limits{}.group_share * gain);
             if (apart > 0) expected += 0.5 * std::erfc((margin / apart - 0.5 * apart) / std::sqrt(2)) / drawn;
         }
@@ -121,9 +121,9 @@ TEST(NextSteps, AnotherSpeedChecksAnEffectThatDependsOnIt) {
     Evidence evidence = world.evidence(1, 32);
     world.add_effect(evidence, "viscoelasticity", world.pattern(1));
     evidence.observed += 4 * evidence.library.effects[0].linear;
-    const DiagnosisBuilder draft(evidence, {});
-    ASSERT_EQ(draft.decision().verdict, Verdict::effect);
-    EXPECT_THAT(draft.diagnosis().next,
+    const DiagnosisBuilder builder(evidence, {});
+    ASSERT_EQ(builder.decision().verdict, Verdict::effect);
+    EXPECT_THAT(builder.diagnosis().next,
                 Contains(Field(&NextStep::what, HasSubstr("repeat the experiment at another plate speed"))));
 }
 
@@ -134,9 +134,9 @@ TEST(NextSteps, HalfTheErrorOfPositionsLowersTheLimitsAsItLowersTheScatter) {
     world.add_effect(evidence, "diameter_error", world.pattern(2));
     const Eigen::RowVectorXd mean = evidence.baseline.colwise().mean();
     evidence.finer_baseline = (0.6 * (evidence.baseline.rowwise() - mean)).rowwise() + mean;
-    const DiagnosisBuilder draft(evidence, {});
-    ASSERT_EQ(draft.decision().verdict, Verdict::no_gap);
-    EXPECT_THAT(draft.diagnosis().next,
+    const DiagnosisBuilder builder(evidence, {});
+    ASSERT_EQ(builder.decision().verdict, Verdict::no_gap);
+    EXPECT_THAT(builder.diagnosis().next,
                 Contains(Field(&NextStep::what, AllOf(HasSubstr("measure positions twice as accurately"),
                                                       HasSubstr("to 60 % of the present value")))));
 }
@@ -147,9 +147,9 @@ TEST(NextSteps, WithoutAGapTheyLowerTheDetectionLimits) {
     const Eigen::VectorXd modulus = world.pattern(2);
     world.add_effect(evidence, "diameter_error", modulus + world.pattern(0.1));
     world.add_nuisance(evidence, "modulus", modulus, 1);
-    const DiagnosisBuilder draft(evidence, {});
-    ASSERT_EQ(draft.decision().verdict, Verdict::no_gap);
-    const auto steps = draft.diagnosis().next;
+    const DiagnosisBuilder builder(evidence, {});
+    ASSERT_EQ(builder.decision().verdict, Verdict::no_gap);
+    const auto steps = builder.diagnosis().next;
     ASSERT_FALSE(steps.empty());
     EXPECT_THAT(steps[0].what, AllOf(HasSubstr("grains.youngs_modulus 5 times more accurately"),
                                      HasSubstr("% of the present value")));

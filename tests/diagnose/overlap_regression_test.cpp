@@ -132,14 +132,14 @@ TEST(WallOverlaps, OffsetsAndSlopesAreFound) {
     std::vector<ContactResidual> contacts;
     for (int k = 0; k < 40; ++k) {
         scan.position.emplace_back(random.uniform(0, 0.2), random.uniform(0, 0.1), 0.05);
-        const double u = random.uniform(0.02, 0.1), bulge = 0.05 * random.normal();
+        const double u = random.uniform(0.02, 0.1), displaced = 0.05 * random.normal();
         const double x = scan.position.back().x() / 0.1 - 1, y = scan.position.back().y() / 0.05 - 1;
         contacts.push_back(
-            contact(k, wall_partner(Wall::plate), u, bulge, bulge + 0.01 + 0.02 * x - 0.03 * y));
-        contacts.push_back(contact(k, wall_partner(Wall::floor), u, bulge, bulge - 0.04));
-        contacts.push_back(
-            contact(k, wall_partner(k % 2 ? Wall::x_min : Wall::y_max), u, bulge, bulge + 0.005 - 0.3 * u));
-        contacts.push_back(contact(k, (k + 1) % 40, u, bulge, 9));
+            contact(k, wall_partner(Wall::plate), u, displaced, displaced + 0.01 + 0.02 * x - 0.03 * y));
+        contacts.push_back(contact(k, wall_partner(Wall::floor), u, displaced, displaced - 0.04));
+        contacts.push_back(contact(k, wall_partner(k % 2 ? Wall::x_min : Wall::y_max), u, displaced,
+                                   displaced + 0.005 - 0.3 * u));
+        contacts.push_back(contact(k, (k + 1) % 40, u, displaced, 9));
     }
     const auto fit = wall_overlaps(recording, scan, contacts);
     const double put_in[] = {0.005, -0.3, -0.04, 0.01, 0.02, -0.03};

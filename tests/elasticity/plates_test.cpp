@@ -108,11 +108,11 @@ protected:
         if (!std::filesystem::exists(fem_folder))
             GTEST_SKIP() << "the finite-element tables are not here: " << fem_folder;
         forces_ = read_table(fem_folder + "sphere_between_plates.csv");
-        bulges_ = read_table(fem_folder + "equator_bulge.csv");
+        displacements_ = read_table(fem_folder + "equator_bulge.csv");
         ASSERT_EQ(forces_.size(), 36u);
-        ASSERT_EQ(bulges_.size(), 18u);
+        ASSERT_EQ(displacements_.size(), 18u);
     }
-    std::vector<Row> forces_, bulges_;
+    std::vector<Row> forces_, displacements_;
 };
 
 TEST_F(FiniteElements, ElasticSphereAgreesWithinOnePerCent) {
@@ -122,7 +122,7 @@ TEST_F(FiniteElements, ElasticSphereAgreesWithinOnePerCent) {
 }
 
 TEST_F(FiniteElements, DisplacementOfTheEquatorWithinOnePerCent) {
-    for (const Row& row : bulges_) {
+    for (const Row& row : displacements_) {
         const double overlap = number(row, "overlap_over_R");
         const Directions z = pair(Vec3::UnitZ()),
                          probed{Vec3::UnitX()};  // the third plate is too far to touch

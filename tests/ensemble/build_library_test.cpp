@@ -21,7 +21,7 @@ using ::testing::UnorderedElementsAre;
 TEST(BaselineTrials, HaveDifferentSeeds) {
     const SmallTrials small;
     LibraryPlan plan;
-    plan.specimens = {{small.model, small.packing}, {small.model, small.packing}};
+    plan.packings = {{small.model, small.packing}, {small.model, small.packing}};
     plan.replicates = 3;
     plan.jitter = 1e-5;
     plan.diameter_jitter = 2e-5;
@@ -45,15 +45,15 @@ TEST(BuildLibrary, ContainsBaselineEffectsAndNuisances) {
     const SmallTrials small;
     Device device;
     LibraryPlan plan;
-    plan.specimens = {{small.model, small.packing}};
+    plan.packings = {{small.model, small.packing}};
     plan.replicates = 3;
     plan.pairs = 2;
     plan.jitter = plan.diameter_jitter = 1e-5;
     plan.candidates = {"force_bias", "plate_tilt"};
     plan.nuisances = nuisances(small.model, {});
-    const Library library = build_library(device, small.question, plan, small.store, {});
-    const auto cells = static_cast<Eigen::Index>(cells_of(small.question.grid).size());
-    EXPECT_EQ(library.grid.displacement, small.question.grid.displacement);
+    const Library library = build_library(device, small.common, plan, small.store, {});
+    const auto cells = static_cast<Eigen::Index>(cells_of(small.common.grid).size());
+    EXPECT_EQ(library.grid.displacement, small.common.grid.displacement);
     EXPECT_EQ(library.packing, (std::vector{0, 0, 0}));
     ASSERT_EQ(library.baseline.rows(), 3);
     ASSERT_EQ(library.baseline.cols(), cells);
@@ -73,13 +73,13 @@ TEST(BuildLibrary, ContainsBaselineEffectsAndNuisances) {
               0.3);  // ln F increases by one with ln E, except for rearrangements
     // The same signature from trials made here.
     std::vector<Trial> trials = baseline_trials(plan);
-    const Eigen::MatrixXd before = observe_trials(device, small.question, trials, small.store, {});
+    const Eigen::MatrixXd before = observe_trials(device, small.common, trials, small.store, {});
     EXPECT_TRUE(same(before.row(2), library.baseline.row(2)));
     trials.resize(2);
     Eigen::MatrixXd differences[2];
     for (int k = 0; k < 2; ++k) {
         for (Trial& trial : trials) trial.model.replica.effects.plate_tilt_x = k ? 0.015 : -0.015;
-        differences[k] = observe_trials(device, small.question, trials, small.store, {}) - before.topRows(2);
+        differences[k] = observe_trials(device, small.common, trials, small.store, {}) - before.topRows(2);
     }
     const Signature tilt = learn_signature("plate_tilt", -0.015, 0.015, differences[0], differences[1]);
     EXPECT_TRUE(same(tilt.linear, library.effects[1].linear));
@@ -92,11 +92,11 @@ TEST(BuildLibrary, UsesSeveralPackings) {
     LibraryPlan plan;
     Packing mirrored = small.packing;
     for (Vec3& position : mirrored.position) position.x() = small.model.replica.box.size_x - position.x();
-    plan.specimens = {{small.model, small.packing}, {small.model, mirrored}};
+    plan.packings = {{small.model, small.packing}, {small.model, mirrored}};
     plan.replicates = 2;
     plan.pairs = 1;
     plan.candidates = {"force_bias"};
-    const Library library = build_library(device, small.question, plan, small.store, {});
+    const Library library = build_library(device, small.common, plan, small.store, {});
     EXPECT_EQ(library.packing, (std::vector{0, 0, 1, 1}));
     EXPECT_EQ(library.effects[0].pairs(), 2);  // one of each packing
     EXPECT_TRUE(library.nuisances.empty());
@@ -107,8 +107,8 @@ TEST(BuildLibrary, FailuresHaveAReasonAndBelongToAnEffect) {
     const SmallTrials small;
     Device device;
     LibraryPlan plan;
-    plan.specimens = {{small.model, small.packing}};
-    plan.specimens[0].model.replica.numerics.overlap_limit = 1e-4;
+    plan.packings = {{small.model, small.packing}};
+    plan.packings[0].model.replica.numerics.overlap_limit = 1e-4;
     plan.replicates = 2;
     plan.pairs = 1;
     plan.candidates = {"friction"};
@@ -119,7 +119,7 @@ TEST(BuildLibrary, FailuresHaveAReasonAndBelongToAnEffect) {
         failed.push_back(probe_of_trial(plan, trial));
         EXPECT_THAT(failure.cause, HasSubstr("overlap"));
     };
-    build_library(device, small.question, plan, small.store, options);
+    build_library(device, small.common, plan, small.store, options);
     // The zero of strain is the instrument's: its trials look at the simulations of the baseline.
     EXPECT_THAT(failed, UnorderedElementsAre("", "", "friction", "friction", "modulus", "modulus"));
 }

@@ -43,8 +43,8 @@ DiagnosisPlan plan(const Scene& scene, const Experiment& experiment, std::vector
 }
 
 Eigen::VectorXd observed_by(const DiagnosisPlan& plan) {
-    return observe(plan.experiments.front().recording, plan.question.grid, plan.question.material,
-                   plan.question.discard);
+    return observe(plan.experiments.front().recording, plan.common.grid, plan.common.material,
+                   plan.common.discard);
 }
 
 TEST(ComparedCycles, AreThoseOfTheScene) {
@@ -55,14 +55,14 @@ TEST(ComparedCycles, AreThoseOfTheScene) {
     EXPECT_EQ(notes, (std::vector<std::string>{
                          "measured: only the first cycle is compared, of 2; protocol.cycles in the scene is "
                          "the number of cycles to simulate"}));
-    EXPECT_EQ(first.library.specimens.front().model.replica.protocol.cycles, 1);
+    EXPECT_EQ(first.library.packings.front().model.replica.protocol.cycles, 1);
     EXPECT_TRUE(mcdem::same(observed_by(first), observed_by(same)));
 
     notes.clear();
     const DiagnosisPlan both = plan(scene_of(2), two, &notes), only = plan(scene_of(2), one, &notes);
     EXPECT_TRUE(notes.empty());
-    EXPECT_EQ(both.library.specimens.front().model.replica.protocol.cycles, 2);
-    EXPECT_EQ(only.library.specimens.front().model.replica.protocol.cycles, 1);
+    EXPECT_EQ(both.library.packings.front().model.replica.protocol.cycles, 2);
+    EXPECT_EQ(only.library.packings.front().model.replica.protocol.cycles, 1);
     EXPECT_FALSE(mcdem::same(observed_by(both), observed_by(same))) << "the second cycle differs";
     EXPECT_TRUE(mcdem::same(observed_by(only), observed_by(same)));
 }

@@ -16,16 +16,17 @@ using ::testing::ThrowsMessage;
 
 class LibraryOrigin : public ::testing::Test {
 protected:
-    std::map<std::string, std::string> origin() const { return library_origin(question, model, grains); }
+    std::map<std::string, std::string> origin() const { return library_origin(common, model, grains); }
     void expect_refused(const std::string& problem) const {
-        EXPECT_THAT([&] { expect_origin(library, origin(), "file.json"); },
-                    ThrowsMessage<InputError>(testing::AllOf(HasSubstr("file.json: was made with " + problem),
-                                                             HasSubstr("give another file for --library"))));
+        EXPECT_THAT(
+            [&] { expect_origin(library, origin(), "file.json"); },
+            ThrowsMessage<InputError>(testing::AllOf(HasSubstr("file.json: was made with " + problem),
+                                                     HasSubstr("give another file name for --library"))));
     }
     void expect_taken() const { EXPECT_NO_THROW(expect_origin(library, origin(), "file.json")); }
 
     SmallTrials small;
-    Question question = small.question;
+    TrialSettings common = small.common;
     Model model = small.model;
     std::size_t grains = 100;
     Library library = [this] {
@@ -55,10 +56,10 @@ TEST_F(LibraryOrigin, ContainsEveryKeyOfAReplicaExceptThoseOfThePacking) {
 
 TEST_F(LibraryOrigin, InstrumentPrecisionVersionAndKernelsMustBeTheSame) {
     const auto only = [&](auto change, const std::string& problem) {
-        const auto before = std::pair{question, model};
+        const auto before = std::pair{common, model};
         change();
         expect_refused(problem);
-        std::tie(question, model) = before;
+        std::tie(common, model) = before;
     };
     only(
         [&] {
@@ -67,8 +68,8 @@ TEST_F(LibraryOrigin, InstrumentPrecisionVersionAndKernelsMustBeTheSame) {
         },
         "measurement.force_error");
     only([&] { model.instrument.stated.position_error += 1e-3; }, "measurement.position_error");
-    only([&] { question.scene.precision = Precision::double_precision; }, "numerics.precision");
-    only([&] { question.program = "99.0 (abc)"; }, "program");
+    only([&] { common.scene.precision = Precision::double_precision; }, "numerics.precision");
+    only([&] { common.program = "99.0 (abc)"; }, "program");
     library.origin["kernels"] = "others";
     expect_refused("kernels = others");
 }

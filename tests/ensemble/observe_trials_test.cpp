@@ -23,14 +23,14 @@ TEST(ObserveTrials, AreTheSameAloneAndInABatch) {
     tilted.model.replica.effects.plate_tilt_x = 0.01;
     biased.model.instrument.force_bias = 0.2;
     const std::vector<Trial> trials{small.trial(1), tilted, biased};
-    const Eigen::MatrixXd together = observe_trials(device, small.question, trials, small.store, {});
+    const Eigen::MatrixXd together = observe_trials(device, small.common, trials, small.store, {});
     ASSERT_EQ(together.rows(), 3);
-    ASSERT_EQ(together.cols(), static_cast<Eigen::Index>(cells_of(small.question.grid).size()));
+    ASSERT_EQ(together.cols(), static_cast<Eigen::Index>(cells_of(small.common.grid).size()));
     EXPECT_TRUE(std::isfinite(together(0, 0)) && std::isfinite(together(0, 1)));
     EXPECT_NE(together(0, 1), together(1, 1));
     for (std::size_t k = 0; k < 3; ++k) {
         const SmallTrials fresh;
-        const auto alone = observe_trials(device, fresh.question, {trials[k]}, fresh.store, {});
+        const auto alone = observe_trials(device, fresh.common, {trials[k]}, fresh.store, {});
         EXPECT_TRUE(same(alone.row(0), together.row(static_cast<Eigen::Index>(k)))) << k;
     }
 }
@@ -53,13 +53,13 @@ TEST(ObserveTrials, StoredTrialsAreNotSimulated) {
     const SmallTrials small;
     Device device;
     Watched first, second, third;
-    const auto fresh = observe_trials(device, small.question, {small.trial(1)}, small.store, first.options());
+    const auto fresh = observe_trials(device, small.common, {small.trial(1)}, small.store, first.options());
     EXPECT_GT(first.calls, 0);
-    const auto kept = observe_trials(device, small.question, {small.trial(1)}, small.store, second.options());
+    const auto kept = observe_trials(device, small.common, {small.trial(1)}, small.store, second.options());
     EXPECT_EQ(second.calls, 0);
     EXPECT_TRUE(same(kept.row(0), fresh.row(0)));
-    const auto more = observe_trials(device, small.question, {small.trial(2), small.trial(1)}, small.store,
-                                     third.options());
+    const auto more =
+        observe_trials(device, small.common, {small.trial(2), small.trial(1)}, small.store, third.options());
     EXPECT_GT(third.calls, 0);
     EXPECT_TRUE(same(more.row(1), fresh.row(0)));
 }
@@ -70,10 +70,10 @@ TEST(ObserveTrials, AnotherInstrumentUsesTheSameSimulation) {
     Trial biased = small.trial(1);
     biased.model.instrument.strain_offset = 1e-3;
     Watched one, two;
-    observe_trials(device, small.question, {small.trial(1)}, small.store, one.options());
+    observe_trials(device, small.common, {small.trial(1)}, small.store, one.options());
     const SmallTrials fresh;
     const auto rows =
-        observe_trials(device, fresh.question, {fresh.trial(1), biased}, fresh.store, two.options());
+        observe_trials(device, fresh.common, {fresh.trial(1), biased}, fresh.store, two.options());
     EXPECT_FALSE(same(rows.row(0), rows.row(1)));
     EXPECT_EQ(files_in(fresh.folder.path / "simulations"), 2);
     // The number of intervals is that of one simulation, for any number of instruments.
@@ -85,49 +85,48 @@ TEST(ObserveTrials, ContinueAfterAnInterruption) {
     Device device;
     TrialOptions impatient;
     impatient.stop_wanted = [] { return true; };
-    EXPECT_THROW(observe_trials(device, small.question, {small.trial(1)}, small.store, impatient),
-                 Interrupted);
+    EXPECT_THROW(observe_trials(device, small.common, {small.trial(1)}, small.store, impatient), Interrupted);
     EXPECT_EQ(files_in(small.folder.path / "simulations"), 0);
-    const auto later = observe_trials(device, small.question, {small.trial(1)}, small.store, {});
+    const auto later = observe_trials(device, small.common, {small.trial(1)}, small.store, {});
     const SmallTrials fresh;
     EXPECT_TRUE(
-        same(later.row(0), observe_trials(device, fresh.question, {fresh.trial(1)}, fresh.store, {}).row(0)));
+        same(later.row(0), observe_trials(device, fresh.common, {fresh.trial(1)}, fresh.store, {}).row(0)));
 }
 
 TEST(ObserveTrials, StoreRecordings) {
     const SmallTrials small;
     Device device;
-    observe_trials(device, small.question, {small.trial(1)}, small.store, {});
-    EXPECT_ANY_THROW(kept_recordings(device, small.question, {small.trial(1)}, small.store));
+    observe_trials(device, small.common, {small.trial(1)}, small.store, {});
+    EXPECT_ANY_THROW(kept_recordings(device, small.common, {small.trial(1)}, small.store));
     Trial kept = small.trial(1);
     kept.keep_recording = true;
-    const auto row = observe_trials(device, small.question, {kept}, small.store, {});
-    const auto recordings = kept_recordings(device, small.question, {kept}, small.store);
+    const auto row = observe_trials(device, small.common, {kept}, small.store, {});
+    const auto recordings = kept_recordings(device, small.common, {kept}, small.store);
     ASSERT_EQ(recordings.size(), 1u);
     EXPECT_EQ(recordings[0].diameter.size(), small.packing.size());
     EXPECT_NE(recordings[0].diameter[0], small.packing.diameter[0]);  // as measured
-    const Eigen::VectorXd seen = observe(recordings[0], small.question.grid, small.question.material);
+    const Eigen::VectorXd seen = observe(recordings[0], small.common.grid, small.common.material);
     for (Eigen::Index cell = 0; cell < seen.size(); ++cell)
         if (std::isfinite(seen[cell])) {
             EXPECT_NEAR(seen[cell], row(0, cell), 1e-4) << cell;  // positions are stored as floats: 1e-8 m
         }
     EXPECT_EQ(seen.array().isFinite().count(), row.array().isFinite().count());
     Watched again;
-    observe_trials(device, small.question, {kept}, small.store, again.options());
+    observe_trials(device, small.common, {kept}, small.store, again.options());
     EXPECT_EQ(again.calls, 0);
 }
 
 TEST(ObserveTrials, EndWhenNoCellNeedsMoreScans) {
     SmallTrials small;
-    small.question.grid.width = 0.003;  // the scan at 3.3 mm during unloading is the first that no cell needs
+    small.common.grid.width = 0.003;  // the scan at 3.3 mm during unloading is the first that no cell needs
     Device device;
     Trial kept = small.trial(1);
     kept.keep_recording = true;
     Watched ended, whole;
-    const auto row = observe_trials(device, small.question, {small.trial(1)}, small.store, ended.options());
+    const auto row = observe_trials(device, small.common, {small.trial(1)}, small.store, ended.options());
     const SmallTrials fresh;
-    const auto row_of_whole = observe_trials(device, small.question, {kept}, fresh.store, whole.options());
-    EXPECT_EQ(kept_recordings(device, small.question, {kept}, fresh.store)[0].scans.size(), 6u);
+    const auto row_of_whole = observe_trials(device, small.common, {kept}, fresh.store, whole.options());
+    EXPECT_EQ(kept_recordings(device, small.common, {kept}, fresh.store)[0].scans.size(), 6u);
     EXPECT_LT(ended.calls, 0.95 * whole.calls);
     EXPECT_TRUE(same(row.row(0), row_of_whole.row(0)));
 }
@@ -135,13 +134,13 @@ TEST(ObserveTrials, EndWhenNoCellNeedsMoreScans) {
 /// Tests whether a trial is given the stored observation of small.trial(1), the only one in the store.
 class Names {
 public:
-    Names() { observe_trials(device_, small.question, {small.trial(1)}, small.store, {}); }
+    Names() { observe_trials(device_, small.common, {small.trial(1)}, small.store, {}); }
 
-    bool taken_for_the_kept(const Question& question, const Trial& trial) {
+    bool taken_for_the_kept(const TrialSettings& common, const Trial& trial) {
         TrialOptions impatient;
         impatient.stop_wanted = [] { return true; };
         try {
-            observe_trials(device_, question, {trial}, small.store, impatient);
+            observe_trials(device_, common, {trial}, small.store, impatient);
             return true;
         } catch (const Interrupted&) {
             return false;
@@ -149,7 +148,7 @@ public:
             return false;  // not found, and it cannot be simulated
         }
     }
-    bool taken_for_the_kept(const Trial& trial) { return taken_for_the_kept(small.question, trial); }
+    bool taken_for_the_kept(const Trial& trial) { return taken_for_the_kept(small.common, trial); }
 
     SmallTrials small;
 
@@ -186,7 +185,7 @@ TEST(TrialNames, DifferForLargeSeeds) {
     const std::uint64_t seed =
         std::numeric_limits<std::uint64_t>::max() - 1;  // as a double it equals the next number
     const auto rows =
-        observe_trials(device, small.question, {small.trial(seed), small.trial(seed + 1)}, small.store, {});
+        observe_trials(device, small.common, {small.trial(seed), small.trial(seed + 1)}, small.store, {});
     EXPECT_FALSE(same(rows.row(0), rows.row(1)));
     EXPECT_EQ(files_in(small.folder.path / "simulations"), 2);
 }
@@ -265,24 +264,24 @@ TEST(TrialNames, DifferForInstruments) {
 
 TEST(TrialNames, DifferForQuestions) {
     Names names;
-    Question question = names.small.question;
+    TrialSettings common = names.small.common;
     const auto expect_apart = [&](const char* what) {
-        EXPECT_FALSE(names.taken_for_the_kept(question, names.small.trial(1))) << what;
-        question = names.small.question;
+        EXPECT_FALSE(names.taken_for_the_kept(common, names.small.trial(1))) << what;
+        common = names.small.common;
     };
-    EXPECT_TRUE(names.taken_for_the_kept(question, names.small.trial(1)));
-    for_each_number(question.material, [&](std::size_t k) {
-        EXPECT_FALSE(names.taken_for_the_kept(question, names.small.trial(1))) << k;
+    EXPECT_TRUE(names.taken_for_the_kept(common, names.small.trial(1)));
+    for_each_number(common.material, [&](std::size_t k) {
+        EXPECT_FALSE(names.taken_for_the_kept(common, names.small.trial(1))) << k;
     });
-    question.grid.width += 1e-9;
+    common.grid.width += 1e-9;
     expect_apart("width");
-    question.grid.displacement[1] += 1e-9;
+    common.grid.displacement[1] += 1e-9;
     expect_apart("displacement");
-    question.discard = 1;
+    common.discard = 1;
     expect_apart("discard");
-    question.program = "another";
+    common.program = "another";
     expect_apart("program");
-    question.scene.precision = Precision::double_precision;
+    common.scene.precision = Precision::double_precision;
     expect_apart("precision");
 }
 
@@ -290,23 +289,23 @@ TEST(ObserveTrials, InPartsAreTheSame) {
     const SmallTrials small, alone;
     const std::vector<Trial> trials{small.trial(1), small.trial(2), small.trial(1)};
     Device device;
-    const auto expected = observe_trials(device, alone.question, trials, alone.store, {});
+    const auto expected = observe_trials(device, alone.common, trials, alone.store, {});
     const std::size_t enough = 8'192 / trials.front().packing.size() + 2;  // one more than fits into a part
     std::vector<Trial> many;
     while (many.size() < enough) many.push_back(small.trial(many.size()));
-    const auto parts = parts_of_trials(small.question, many);
+    const auto parts = parts_of_trials(small.common, many);
     ASSERT_EQ(parts.size(), 2u);
     EXPECT_EQ(parts[0].size() + parts[1].size(), many.size());
-    const auto few = parts_of_trials(small.question, trials);
+    const auto few = parts_of_trials(small.common, trials);
     ASSERT_EQ(few.size(), 1u);
-    EXPECT_FALSE(are_observed(device.description(), small.question, few[0], small.store));
-    observe_trials(device, small.question, few[0], small.store, {});
-    EXPECT_TRUE(are_observed(device.description(), small.question, trials, small.store));
-    EXPECT_FALSE(are_observed("another", small.question, trials, small.store));
+    EXPECT_FALSE(are_observed(device.description(), small.common, few[0], small.store));
+    observe_trials(device, small.common, few[0], small.store, {});
+    EXPECT_TRUE(are_observed(device.description(), small.common, trials, small.store));
+    EXPECT_FALSE(are_observed("another", small.common, trials, small.store));
     EXPECT_EQ(files_in(small.folder.path / "simulations"), 2);
     TrialOptions none;
     none.on_progress = [](double) { ADD_FAILURE() << "simulated again"; };
-    const auto got = observe_trials(device, small.question, trials, small.store, none);
+    const auto got = observe_trials(device, small.common, trials, small.store, none);
     for (Eigen::Index t = 0; t < expected.rows(); ++t) {
         EXPECT_TRUE(same(got.row(t), expected.row(t))) << t;
     }

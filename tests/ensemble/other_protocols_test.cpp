@@ -20,7 +20,7 @@ Trial relaxing(const SmallTrials& small, double viscoelasticity) {
 Eigen::VectorXd observed(const SmallTrials& small, Trial trial, const OtherProtocol* protocol) {
     Device device;
     if (protocol) protocol->change(trial.model.replica);
-    return observe_trials(device, protocol ? protocol->question : small.question, {trial}, small.store, {})
+    return observe_trials(device, protocol ? protocol->common : small.common, {trial}, small.store, {})
         .row(0)
         .transpose();
 }
@@ -29,10 +29,10 @@ Eigen::VectorXd observed(const SmallTrials& small, Trial trial, const OtherProto
 TEST(OtherProtocols, AHoldAtFullStrokeShowsRelaxation) {
     const SmallTrials small;
     const Trial soft = relaxing(small, 0.4), elastic = relaxing(small, 0);
-    const auto protocols = other_protocols(small.question, soft.model.replica, false);
+    const auto protocols = other_protocols(small.common, soft.model.replica, false);
     ASSERT_EQ(protocols.size(), 2u);
     EXPECT_EQ(protocols[0].what, "hold the plate at full stroke for 0.6 s");
-    const auto cells = cells_of(small.question.grid);
+    const auto cells = cells_of(small.common.grid);
     const Eigen::VectorXd stroke = observed(small, soft, nullptr),
                           held = observed(small, soft, &protocols[0]),
                           rigid = observed(small, elastic, &protocols[0]);
@@ -46,7 +46,7 @@ TEST(OtherProtocols, AHoldAtFullStrokeShowsRelaxation) {
         EXPECT_TRUE(std::isnan(stroke[cell]));
         if (std::isnan(held[cell])) continue;
         ++found;
-        EXPECT_EQ(cells[c].displacement, small.question.grid.displacement.back());
+        EXPECT_EQ(cells[c].displacement, small.common.grid.displacement.back());
         EXPECT_GT(held[cell], rigid[cell] + 0.1);
     }
     EXPECT_EQ(found, 1);
@@ -56,7 +56,7 @@ TEST(OtherProtocols, OneMoreCycleHasTheCellsOfOne) {
     const SmallTrials small;
     Trial trial = small.trial();
     trial.model.replica.effects.plasticity = 0.3;
-    const auto protocols = other_protocols(small.question, trial.model.replica, false);
+    const auto protocols = other_protocols(small.common, trial.model.replica, false);
     const Eigen::VectorXd one = observed(small, trial, nullptr), two = observed(small, trial, &protocols[1]);
     EXPECT_FALSE(same(one, two));
     for (Eigen::Index cell = 0; cell < one.size(); ++cell)
@@ -67,15 +67,15 @@ TEST(OtherProtocols, OneMoreCycleHasTheCellsOfOne) {
 TEST(OtherProtocols, ASlowerPlateShowsTheRate) {
     const SmallTrials small;
     const Trial soft = relaxing(small, 0.4), elastic = relaxing(small, 0);
-    const auto protocols = other_protocols(small.question, soft.model.replica, true);
+    const auto protocols = other_protocols(small.common, soft.model.replica, true);
     ASSERT_EQ(protocols.size(), 3u);
     EXPECT_EQ(protocols[2].what, "press 4 times slower");
-    const auto cells = cells_of(small.question.grid);
+    const auto cells = cells_of(small.common.grid);
     const auto force = [&](const Trial& trial, const OtherProtocol* protocol) {
         const Eigen::VectorXd seen = observed(small, trial, protocol);
         for (std::size_t c = 0; c < cells.size(); ++c)
             if (observables()[static_cast<std::size_t>(cells[c].observable)].name == "top_force" &&
-                cells[c].displacement == small.question.grid.displacement.back() &&
+                cells[c].displacement == small.common.grid.displacement.back() &&
                 cells[c].phase == Phase::load)
                 return seen[static_cast<Eigen::Index>(c)];
         return std::nan("");
@@ -90,7 +90,7 @@ TEST(OtherProtocols, AreNotMadeOfAProgramme) {
     const SmallTrials small;
     Replica replica = small.model.replica;
     replica.programme.resize(1);
-    EXPECT_TRUE(other_protocols(small.question, replica, true).empty());
+    EXPECT_TRUE(other_protocols(small.common, replica, true).empty());
 }
 
 /// A scene with little friction and an experiment with adhesion, whose plate is said to pause for 0.2 s at
@@ -105,12 +105,12 @@ Diagnosis diagnosis_with_pauses(double speed) {
     Trial truth{{scene.replicas.front(), {{1e-5, 1e-5, 0.01, 1e-4}}}, make_packings(scene).front()};
     truth.model.replica.effects.adhesion = 0.1;
     truth.keep_recording = true;
-    const Question question{scene, Grid{{0.01}, 0.005, 0.014}, reference_material(truth.model), 0, "test"};
+    const TrialSettings common{scene, Grid{{0.01}, 0.005, 0.014}, reference_material(truth.model), 0, "test"};
     const ObservationStore store(folder.path / "simulations");
-    observe_trials(device, question, {truth}, store, {});
+    observe_trials(device, common, {truth}, store, {});
     Experiment experiment;
     experiment.name = "measured";
-    experiment.recording = kept_recordings(device, question, {truth}, store).front();
+    experiment.recording = kept_recordings(device, common, {truth}, store).front();
     experiment.measurement = truth.model.instrument.stated;
     experiment.plate_pause = 0.2;
     experiment.plate_speed = speed;

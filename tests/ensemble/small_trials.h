@@ -16,14 +16,14 @@ struct SmallTrials {
         model.replica = scene.replicas.front();
         model.mean_diameter = 0.0215;
         model.instrument.stated = {1e-5, 1e-5, 0.01, 1e-4};
-        question = {scene, Grid{{0.0066, 0.0098}, 0.005, 0.01}, reference_material(model), 0, "test"};
+        common = {scene, Grid{{0.0066, 0.0098}, 0.005, 0.01}, reference_material(model), 0, "test"};
     }
 
     Trial trial(std::uint64_t seed = 1) const { return {model, packing, 1e-5, 1e-5, seed}; }
 
     Model model;
     Packing packing;
-    Question question;
+    TrialSettings common;
     TestFolder folder;
     ObservationStore store{folder.path / "simulations"};
 };

@@ -278,7 +278,7 @@ INSTANTIATE_TEST_SUITE_P(
                             "frame 3: grains 62 and 63"},
                       Spoil{"jump", odd, swap_numbers,
                             "grains jump by most of a diameter from frame to frame, are they numbered "
-                            "alike? 2 in 1 frame, first in frame 8: grain 31 by 19."},
+                            "consistently? 2 in 1 frame, first in frame 8: grain 31 by 19."},
                       Spoil{"few_positions", missing, [](Experiment& e) { scans(e)[2].position.clear(); },
                             "positions in 1 of 9 frames"},
                       Spoil{"no_grains", missing, leave_out_grains, "diameters and positions"}),

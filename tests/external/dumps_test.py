@@ -103,9 +103,9 @@ def compare(out, scans, before):
         touching = [contact for contact in scan["contacts"] if any(contact[3])]  # LAMMPS also lists grains that do not touch
         assert len(contacts[n]) == len(touching), f"scan {n}: {len(contacts[n])} contacts for {len(touching)}"
         for i, partner, point, force in touching:
-            turned = not isinstance(partner, str) and partner < i
-            row = contacts[n][(str(partner), str(i)) if turned else (str(i), str(partner))]
-            expect_near([row[key] for key in ("fx_N", "fy_N", "fz_N")], [-f if turned else f for f in force], 1e-9, f"scan {n}")
+            negated = not isinstance(partner, str) and partner < i
+            row = contacts[n][(str(partner), str(i)) if negated else (str(i), str(partner))]
+            expect_near([row[key] for key in ("fx_N", "fy_N", "fz_N")], [-f if negated else f for f in force], 1e-9, f"scan {n}")
             expect_near([row[key] for key in ("x_m", "y_m", "z_m")], point, 1e-9, f"scan {n}")
     print(f"{out}: {len(scans)} scans as they were dumped, {sum(map(len, contacts.values()))} contacts")
 

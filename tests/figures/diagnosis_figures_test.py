@@ -160,7 +160,7 @@ class Command(unittest.TestCase):
     def test_a_diagnosis_stands_alone(self):
         done = mcdem.run("figures", "diagnosis.json", "run", "--out", "both")
         self.assertEqual(done.returncode, 2)
-        self.assertIn("must stand alone", done.stderr)
+        self.assertIn("cannot be combined with other runs", done.stderr)
 
     def test_print_size(self):
         for name, width in (("where", 178), ("which", 178), ("how_far", 86)):

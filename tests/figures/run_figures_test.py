@@ -129,7 +129,7 @@ class Curves(unittest.TestCase):
         figures.save(axes, folder / "hostile.svg")
         self.assertIn(r" _$\frac{1}$ <b>&", drawn.texts_of_svg(folder / "hostile.svg"))
 
-    def test_a_crowded_key_hides_no_curve(self):
+    def test_a_long_legend_is_drawn_outside_the_axes(self):
         values = (folder / "run/figures.json").read_text()
         (folder / "figures.json").write_text(values.replace('"words": "MC-DEM"', f'"words": "{"long " * 8}"'))
         axes = figures.top_force(folder)
@@ -200,7 +200,7 @@ class Files(unittest.TestCase):
             figures.save(axes, folder / "away.exe")
         self.assertEqual(list(folder.glob("away*")), [])
 
-    def test_a_figure_that_cannot_be_written_is_told(self):
+    def test_an_error_while_writing_a_figure_is_reported(self):
         limit = (folder / "run/figures.json").stat().st_size // 1024 + 2
         done = subprocess.run(["bash", "-c", f'ulimit -f {limit}; exec "$@"', "bash", mcdem.file, "figures", "run", "--out", "full"],
                               cwd=folder, capture_output=True, text=True, timeout=500)
@@ -209,7 +209,7 @@ class Files(unittest.TestCase):
         self.assertNotIn("Traceback", done.stderr)
         self.assertEqual(list((folder / "full").glob("*.tmp")), [])
 
-    def test_what_is_no_figures_json_is_told(self):
+    def test_an_invalid_figures_json_is_reported(self):
         (folder / "other").mkdir()
         with self.assertRaisesRegex(FileNotFoundError, "mcdem figures"):
             figures.top_force(folder / "other")
@@ -255,7 +255,7 @@ class WithoutMatplotlib(unittest.TestCase):
     def test_no_python(self):
         self.check_python("/nowhere/python3", "/nowhere/python3: cannot be started")
 
-    def test_a_python_that_fails_without_a_word(self):
+    def test_a_python_that_fails_without_a_message_is_reported(self):
         self.check_python("/bin/false", "no figures: run_alone/figures.json could not be drawn")
 
 

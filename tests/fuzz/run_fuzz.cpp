@@ -74,7 +74,7 @@ public:
         saved_.fields = simulation_.save();
     }
     const Checkpoint& saved() const { return saved_; }
-    void go_on_from(const Checkpoint& checkpoint) {
+    void resume_from(const Checkpoint& checkpoint) {
         simulation_.restore(checkpoint.fields);
         for (int round = 0; round < 2; ++round) advance();
     }
@@ -108,7 +108,7 @@ void try_checkpoint(ByteSource& source) {
     write_checkpoint(scratch_folder(), checkpoint);
     if (source.byte() % 4 == 0) fuzz::mutate_hdf5(scratch_folder() / "checkpoint.h5", source);
     expect_read_or_refused([&] {
-        if (const auto read = read_checkpoint(scratch_folder())) simulation.go_on_from(*read);
+        if (const auto read = read_checkpoint(scratch_folder())) simulation.resume_from(*read);
     });
 }
 

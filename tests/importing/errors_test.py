@@ -11,7 +11,7 @@ class Errors(ImportCase):
     def mapping_problems(self, text):
         return self.problems_of(lambda: parse_mapping(text, "m"))
 
-    def test_wrong_rows_are_told_with_their_lines(self):
+    def test_invalid_rows_are_reported_with_line_numbers(self):
         self.write_lab()
         mapping = mapping_text(mapping_of(self.guess([self.path(name) for name in ("kraft.csv", "koerner.csv", "kontakte.csv")])))
         texts = {"kraft.csv": lab_plate(self.truth), "koerner.csv": lab_grains(self.truth), "kontakte.csv": lab_contacts(self.truth)}
@@ -37,7 +37,7 @@ class Errors(ImportCase):
         self.assertEqual(self.problems_of(lambda: self.by_mapping('[[table]]\nrole = "plate"\nfiles = ["none", "neither"]\n')),
                          ["none: must be a table, got no such file", "neither: must be a table, got no such file"])
 
-    def test_wrong_mappings_are_told_at_once(self):
+    def test_all_errors_of_a_mapping_are_reported_together(self):
         self.assertEqual(self.mapping_problems(""), ["m: must hold at least one [[table]], got none"])
         self.expect_one(self.mapping_problems("[[table]\n"), "m:1: must be TOML, got")
         self.assertEqual(self.mapping_problems('x = 1\n[[table]]\nrole = "sand"\nseparator = "|"\n'),
@@ -94,10 +94,10 @@ class Errors(ImportCase):
         tables = self.guess(files)
         contacts = mapping_of(tables)[2]
         for key in ("id_offset", "force_on", "length_unit", "force_unit"):
-            self.assertEqual(contacts[key].sure, "unclear", key)
+            self.assertEqual(contacts[key].certainty, "unclear", key)
         self.expect_among(wrong_rows(tables), 'must be a finite number, got "NaN"')
 
-    def test_what_is_missing_is_told(self):
+    def test_missing_tables_are_reported(self):
         self.expect_one(self.problems_of(lambda: self.imported(self.guess(self.write_lab()[1:2]))),
                         "plate: must be one table with the plate's position and force by frame, got 0")
         self.assertEqual(len(self.problems_of(lambda: self.guess([self.path("a"), self.path("b")]))), 2)

@@ -35,19 +35,19 @@ class Frames(ImportCase):
         grains = imported.grains
         return grains[grains.frame == frame][["x_m", "y_m", "z_m"]].values
 
-    def test_a_table_without_rows_has_no_frames_that_could_be_ones_of_the_plate(self):
+    def test_frames_of_a_table_without_rows_are_unclear(self):
         dump = self.write("grains.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n0\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
                           "ITEM: ATOMS id x y z radius\n")
         tables = self.guess([self.plate("frame [s]"), dump])
         frames = self.of(tables, "grains")["frames_by"]
-        self.assertEqual(frames.sure, "unclear")
+        self.assertEqual(frames.certainty, "unclear")
         self.assertIn("there are 0 frames here", frames.why)
         self.expect_among(self.problems_of(lambda: self.imported(tables)), "grains.dump: must have rows")
 
     def test_numbers_in_file_names_are_those_of_the_plate(self):
         files = [self.plate("frame")] + self.grain_files([(2, "grains_002.txt"), (3, "grains_003.txt"), (5, "grains_005.txt")])
         tables = self.guess(files)
-        self.assertEqual(self.of(tables, "grains")["frames_by"].sure, "likely")
+        self.assertEqual(self.of(tables, "grains")["frames_by"].certainty, "likely")
         self.assertEqual(self.unclear(tables), [])
         imported = self.imported(tables)
         self.assertEqual(len(imported.plate), 5, "two rows before the first grains are left out")
@@ -78,7 +78,7 @@ class Frames(ImportCase):
             plate = self.plate(frame, 0, 0.7, [Row(*row) for row in zip(heights, forces)])
             tables = self.guess([plate] + files)
             self.assertEqual(self.of(tables, "grains").word("frames_by"), "rows" if frame else "plate")
-            self.assertEqual(self.of(tables, "grains")["frames_by"].sure, "likely")
+            self.assertEqual(self.of(tables, "grains")["frames_by"].certainty, "likely")
             self.assertEqual(self.unclear(tables), [])
             imported = self.imported(tables)
             self.assertEqual([*imported.grains.frame.unique()], [0, 12, 24])
@@ -112,7 +112,7 @@ class Frames(ImportCase):
         self.assertEqual(self.unclear(tables), [])
         np.testing.assert_allclose(self.position(self.imported(tables), 3), self.truth.scans[3].position, atol=1e-9)
 
-    def test_numbers_beside_a_plate_without_any_count_from_nought_or_must_be_confirmed(self):
+    def test_frame_numbers_start_at_0_or_must_be_confirmed_if_the_plate_has_none(self):
         files = [self.plate(""), self.grains("frame", 1, (0, 2, 3))]
         self.assertEqual(self.unclear(self.guess(files)), [])
         self.grains("frame", 1, (1, 2, 3))

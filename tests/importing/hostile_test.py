@@ -70,7 +70,7 @@ class Hostile(ImportCase):
                 f"{i},{z},{y},{x}\n" for i, (x, y, z) in enumerate(400 * scan.position))},
         ]
 
-    def expect_told(self, error):
+    def expect_positions(self, error):
         """Each problem has a position, except the last one, which may count the rest."""
         self.assertTrue(error.problems and all(": " in problem or problem.startswith(".. and ") for problem in error.problems), error)
 
@@ -95,7 +95,7 @@ class Hostile(ImportCase):
                 try:
                     self.import_all(files)
                 except InputError as error:
-                    self.expect_told(error)
+                    self.expect_positions(error)
 
     def test_mappings(self):
         text = mapping_text(mapping_of(self.guess(self.write_lab()))).encode()
@@ -106,7 +106,7 @@ class Hostile(ImportCase):
                     parse_mapping(changed, "m")
                     self.imported(self.by_mapping(changed))
                 except InputError as error:
-                    self.expect_told(error)
+                    self.expect_positions(error)
 
 
     def test_long_mappings_are_refused_in_seconds(self):

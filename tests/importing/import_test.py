@@ -14,7 +14,7 @@ from mcdem.importing.text import Form
 
 
 class Import(ImportCase):
-    def test_a_german_laboratorys_tables_with_units_are_safe(self):
+    def test_german_names_with_units_need_no_confirmation(self):
         tables = self.guess(self.write_lab())
         self.assertEqual(self.unclear(tables), [])
         self.assertEqual(self.of(tables, "grains").word("length_unit"), "mm")
@@ -23,7 +23,7 @@ class Import(ImportCase):
         self.assertEqual(self.of(tables, "contacts").walls["Boden"].why, "its name")
         self.expect_truth(tables)
 
-    def test_units_that_nobody_names_come_from_box_and_stiffness(self):
+    def test_missing_units_are_derived_from_box_and_stiffness(self):
         tables = self.guess(self.write_lab(Style("\t", ".", False)))
         self.assertEqual(self.unclear(tables), [])
         for role in ("plate", "grains", "contacts"):
@@ -55,7 +55,7 @@ class Import(ImportCase):
         self.write("koerner.csv", lab_grains(self.truth).replace("Radius", "Durchmesser"))
         self.expect_among(self.unclear(self.guess(files)), "is it the radius?")
 
-    def test_dumps_without_telling_names_are_told_by_their_numbers(self):
+    def test_dump_columns_without_clear_names_are_identified_by_values(self):
         tables = self.guess([self.write("pairs.dump", dump_of_contacts(self.truth, False)),
                              self.write("grains.dump", dump_of_grains(self.truth)), self.write("plate.csv", plain_plate(self.truth))])
         self.assertEqual(self.unclear(tables), [])
@@ -111,7 +111,7 @@ fy = "c_p[5]"
 5 = "plate"
 """))
 
-    def test_on_whom_a_force_is_and_both_sides_are_seen(self):
+    def test_the_grain_a_force_acts_on_and_pairs_listed_twice_are_detected(self):
         files = self.write_lab()
         for scan in self.truth.scans:
             for contact in scan.contacts:
@@ -145,7 +145,7 @@ fy = "c_p[5]"
         contacts = self.imported(tables).contacts
         self.assertEqual([*contacts.grain], [c.grain for _, c in pairs])
 
-    def test_grains_without_names_are_told_by_their_touching(self):
+    def test_grains_without_column_names_are_identified_by_touching_neighbours(self):
         rows = np.column_stack([self.truth.scans[0].position, self.truth.diameter / 2])
         tables = self.guess([self.write("pack.txt", "".join("\t".join(f"{x:.6g}" for x in row) + "\n" for row in rows))])
         self.assertEqual(tables[0].role, "grains")

@@ -34,7 +34,7 @@ class Machines(ImportCase):
         rows = rows_of(self.truth, '"{t}","{z:.9g}","{f:.9g}"\n').replace(".", ",")
         self.expect_all_of('"Zeit [s]","Height [mm]","Load [N]"\n' + rows)
 
-    def test_a_trigger_tells_the_rows_of_the_frames(self):
+    def test_a_trigger_column_selects_the_rows_of_frames(self):
         rows = "".join(f"{0.5 * s.frame},{1e3 * s.plate_z:.9g},{s.top_force:.9g},{s.frame}\n"
                        f"{0.5 * s.frame + 0.2},{1e3 * s.plate_z - 0.1:.9g},{s.top_force:.9g},\n" for s in self.truth.scans)
         name, *grains = lab_grains(self.truth, Style(",", ".")).splitlines()

@@ -50,7 +50,7 @@ class Yade(ImportCase):
 
 
 class Forces(ImportCase):
-    def test_of_which_only_the_size_is_known(self):
+    def test_magnitudes_without_directions_are_imported(self):
         files = self.write_lab()
         self.write("kontakte.csv", Style(",", ".").table(["Zeit [s]", "id1", "id2", "force_N"], (
             (0.5 * s.frame, str(c.grain + 1), c.partner_text(), f"{np.linalg.norm(c.force):.12g}") for s in self.truth.scans for c in s.contacts)))
@@ -208,13 +208,13 @@ class Images(ImportCase):
         self.assertEqual(self.unclear(tables), [])
         self.expect_truth(tables)
 
-    def test_spams_contacts_without_forces_are_left_aside(self):
+    def test_contacts_of_spam_without_forces_are_unused(self):
         self.known.voxel_size = VOXEL
         pairs = [(i, i + 1, 0.5, 0.5, 0.7, 12) for i in range(1, 30)]
         contacts = self.write("contacts.csv", Style(",", ".").table(["label1", "label2", "orientZ", "orientY", "orientX", "voxels"], pairs))
         tables = self.guess(self.spam_labels() + [contacts])
         unused = next(table.map for table in tables if table.map.files == [contacts])
-        self.assertEqual((unused.role, unused.role_sure), ("unused", "likely"))
+        self.assertEqual((unused.role, unused.role_certainty), ("unused", "likely"))
         self.assertIn("without forces", unused.role_why)
         self.assertEqual(self.unclear(tables), [])
         self.expect_truth(tables)

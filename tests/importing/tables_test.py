@@ -61,7 +61,7 @@ class Text(Tables):
         self.assertEqual(read.text(0, 1), "2;3")
         self.assertTrue(math.isnan(read.numbers(1)[0]))
 
-    def test_words_that_python_takes_for_numbers_are_none(self):
+    def test_number_forms_of_python_alone_are_not_numbers(self):
         read = table("x,F\n5,6\n1_000,2\n0x10,7\n1e999,\u0663\n")
         self.assertEqual(str(values(read)), "[[5.0, 6.0], [nan, 2.0], [nan, 7.0], [nan, nan]]")
 
@@ -69,7 +69,7 @@ class Text(Tables):
         read = table("x,F\n# remark\n\n1,2\n3,4\n")
         self.assertEqual([read.where(0), read.where(1)], ["t:4", "t:5"])
 
-    def test_wrong_ones_are_told(self):
+    def test_invalid_files_are_reported(self):
         self.assertEqual(self.problems(""), ["t: must have at least one row with a number in it, got none"])
         self.expect_one(self.problems("a,b\nc,d\n"), "at least one row")
         self.assertEqual(self.problems("a,b\n1,2\n1,2,3\n1\n"), ["t:3: must have 2 columns as the first row, got 3",
@@ -114,7 +114,7 @@ class Dump(Tables):
                       "ITEM: ENTRIES c_1[1] c_1[2] c_2 \n1 2 0.5 \n")
         self.assertEqual(local.columns, ["c_1[1]", "c_1[2]", "c_2"])
 
-    def test_wrong_ones_are_told(self):
+    def test_invalid_files_are_reported(self):
         def spoiled(wrong, right):
             self.assertIn(wrong, TWO_FRAMES)
             return self.problems(TWO_FRAMES.replace(wrong, right, 1))
@@ -157,7 +157,7 @@ class Vtk(Tables):
         self.assertEqual(contacts.columns, ["x1", "y1", "z1", "x2", "y2", "z2", "fn"])
         self.assertEqual(values(contacts), [[1, 2, 3, 4, 5, 6, 9]])
 
-    def test_wrong_ones_are_told(self):
+    def test_invalid_files_are_reported(self):
         self.assertEqual(self.problems("# vtk DataFile Version 3.0\nc\nBINARY\n"), ["t:3: the format must be ASCII: write the file as text"])
         self.assertEqual(self.problems(VTK), ["t: must hold POINTS, got none"])
         self.expect_one(self.problems(VTK + "POINTS 2 double\n1 2 3\n"), "3 more numbers must follow, got the file's end")

@@ -63,7 +63,7 @@ class Upwards(ImportCase):
         self.assertEqual(self.unclear(tables), [])
         self.expect_truth(tables)
 
-    def test_names_say_it_and_walls_turn_round_too(self):
+    def test_a_column_name_can_reverse_z_and_the_walls(self):
         files, turned = self.write_downwards(0, "plate"), downwards(self.truth, 0)
         self.write("koerner.csv", lab_grains(turned).replace(";z [mm]", ";Tiefe [mm]"))
         self.write("kontakte.csv", lab_contacts(turned).replace("Deckel", "zmin").replace("Boden", "zmax"))
@@ -79,7 +79,7 @@ class Upwards(ImportCase):
         files = self.write_downwards(0, "plate", "grains", "contacts")
         self.expect_among(self.unclear(self.guess(files[:2])), 'z must be confirmed, got "?-z [mm]"', "is z downwards?")
 
-    def test_displacements_that_count_upwards_are_turned_round(self):
+    def test_upward_displacements_are_reversed(self):
         files = self.write_lab()
         self.write("kraft.csv", Style(",", ".").table(["Zeit [s]", "displacement_mm", "force_N"], (
             (0.5 * s.frame, repr(float(-1e3 * (0.0605 - s.plate_z))), repr(float(s.top_force))) for s in self.truth.scans)))

@@ -124,9 +124,9 @@ std::array<double, 4> displacements(ContactModel model) {
     const double modulus = start.replica.grains.youngs_modulus;
     const double hertz = 4.0 / 3 * modulus / 0.75 * std::sqrt(radius) * std::pow(overlap, 1.5);
     EXPECT_NEAR(-force / hertz, 1, 0.01);
-    const auto bulge = SavedRows(batch, kernels, {start}).by_partner("displacement", 0, 0);
+    const auto displacement = SavedRows(batch, kernels, {start}).by_partner("displacement", 0, 0);
     std::array<double, 4> found;
-    for (int k = 0; k < 4; ++k) found[k] = bulge.at(k + 1) / (hertz / (modulus * radius));
+    for (int k = 0; k < 4; ++k) found[k] = displacement.at(k + 1) / (hertz / (modulus * radius));
     return found;
 }
 

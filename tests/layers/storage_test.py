@@ -71,7 +71,7 @@ def stopped_before_merge(place):
     return parts
 
 
-def a_passing_error_at_the_merge_deletes_no_part(place):
+def a_temporary_read_error_at_the_merge_deletes_no_part(place):
     stopped_before_merge(place)
     for fault in ["ESTALE", "EMFILE", "EACCES", "EIO"]:
         for kind in ["open", "read"]:
@@ -85,7 +85,7 @@ def a_passing_error_at_the_merge_deletes_no_part(place):
     expect(mcdem(place, *IN_PARTS), 0)
 
 
-def a_passing_error_is_not_called_damage(place):
+def a_temporary_read_error_is_not_reported_as_damage(place):
     whole_run(place)
     for fault in ["ESTALE", "EMFILE", "EACCES"]:
         done = mcdem(place, "table", "out", fault=fault, fault_at=1, fault_kinds="open", fault_name="run.h5")
@@ -154,7 +154,7 @@ def parts_of_no_replicas_are_refused(place):
     expect(mcdem(place, *IN_PARTS), 2, "must be a number of replicas above 0")
 
 
-def parts_cut_in_another_way_are_computed_again(place):
+def parts_with_other_replicas_are_computed_again(place):
     result = whole_run(place)
     shutil.rmtree(place / "out")
     parts = stopped_before_merge(place)
@@ -182,7 +182,7 @@ def pipes_are_refused_at_once(place):
            "challenge.json: is a pipe or device")
 
 
-def what_the_system_refuses_is_told_with_its_path(place):
+def errors_of_the_system_are_reported_with_the_path(place):
     os.symlink("loop", place / "loop")
     done = mcdem(place, *RUN[:3], "loop", "--no-figures")
     expect(done, 1, "mcdem: loop")
@@ -246,7 +246,7 @@ def a_changed_value_is_found(place):
     expect(mcdem(place, "verify", "out"), 1, "out/plate.csv: DAMAGED OR CHANGED", "stdout")
     with h5py.File(place / "out/run.h5", "r+") as run:
         del run["digests"]
-    expect(mcdem(place, "verify", "out/run.h5"), 0, "no damage found: it carries no digests", "stdout")
+    expect(mcdem(place, "verify", "out/run.h5"), 0, "no damage found: it has no digests", "stdout")
 
 
 def an_unfinished_run_is_verified(place):
@@ -297,7 +297,7 @@ def a_killed_call_leaves_no_part_of_an_experiment(place):
         shutil.rmtree(place / "lab")
 
 
-def numbers_that_are_none_make_no_experiment(place):
+def from_run_refuses_values_that_are_not_numbers(place):
     whole_run(place)
     with h5py.File(place / "out/run.h5", "r+") as run:
         del run["digests"]

@@ -109,7 +109,7 @@ def goes_on_when_all_devices_vanished(place):
     place.expect_like_alone("both")
 
 
-def goes_on_as_one(place):
+def an_interrupted_run_continues_in_one_process(place):
     """All processes are interrupted; a single one continues."""
     place.run_alone()
     hold = Hold(place, only_one=True)
@@ -132,7 +132,7 @@ def main():
         skip("this OpenCL has no two devices alike (PoCL makes them: POCL_DEVICES)")
     shared_runs.run_tests([uses_all_of_them, refuses_another_run, outlives_a_killed_process,
                            gives_up_a_part_that_kills_its_processes, outlives_a_vanished_device,
-                           goes_on_when_all_devices_vanished, goes_on_as_one])
+                           goes_on_when_all_devices_vanished, an_interrupted_run_continues_in_one_process])
 
 
 main()

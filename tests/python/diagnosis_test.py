@@ -74,7 +74,7 @@ class Diagnoses(unittest.TestCase):
             mcdem.report([self.folder / "nowhere"], self.folder / "none.html")
         self.assertFalse((self.folder / "none.html").exists())
 
-    def test_interrupted_by_its_callback_it_goes_on_from_what_is_kept(self):
+    def test_an_interruption_by_the_callback_is_passed_on(self):
         def refuse(stage, fraction):
             raise InterruptedError(stage)
 

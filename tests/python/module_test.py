@@ -70,7 +70,7 @@ class Scenes(Folder):
         self.assertEqual({one["contact.gamma"] for one in varied.parameters}, {1, 1.25, 1.5})
         self.assertEqual({one["protocol.scan_at_start"] for one in varied.parameters}, {False, True})
 
-    def test_what_holds_itself_or_is_nested_without_end_is_refused(self):
+    def test_recursive_or_too_deeply_nested_values_are_refused(self):
         holds_itself = {}
         holds_itself["grains"] = holds_itself
         listed = []
@@ -182,7 +182,7 @@ class Arrays(unittest.TestCase):
             self.assertIs(first.base, recording)
         self.assertTrue(np.shares_memory(recording.top_force, recording.scans))
 
-    def test_arrays_keep_the_run_alive_and_let_it_go(self):
+    def test_arrays_stay_valid_and_free_the_run_after_use(self):
         run = mcdem.simulate(mcdem.Scene(SMALL))
         position, before = run[0].positions(1), run[0].positions(1).copy()
         alive, owner = weakref.ref(run), weakref.ref(position.base)
@@ -233,7 +233,7 @@ class Runs(Folder):
         self.assertTrue(np.array_equal(mcdem.simulate(scene)[0].top_force,
                                        mcdem.run(scene, self.folder / "out")[0].top_force))
 
-    def test_control_c_ends_in_good_order_and_the_run_goes_on(self):
+    def test_an_interrupted_run_can_be_resumed(self):
         scene = mcdem.Scene(SMALL)
         asked = []
 
@@ -255,7 +255,7 @@ class Runs(Folder):
             asked.clear()
             mcdem.simulate(scene, progress=interrupt_once)
 
-    def test_what_a_callback_raises_comes_out(self):
+    def test_exceptions_of_callbacks_are_passed_on(self):
         def refuse(fraction):
             raise LookupError(f"at {fraction:.0%}")
 
@@ -264,7 +264,7 @@ class Runs(Folder):
         with self.assertRaisesRegex(LookupError, "at "):
             mcdem.run(mcdem.Scene(SMALL), self.folder / "out", progress=refuse)
 
-    def test_a_forked_child_is_told_that_opencl_does_not_work_there(self):
+    def test_opencl_is_refused_in_a_forked_child(self):
         mcdem.simulate(mcdem.Scene(SMALL))
         for call in (lambda: mcdem.simulate(mcdem.Scene(SMALL)), lambda: mcdem.run(mcdem.Scene(SMALL), self.folder / "out"),
                      mcdem.devices):
@@ -278,7 +278,7 @@ class Runs(Folder):
                 os._exit(3)
             self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
 
-    def test_other_threads_go_on_while_it_simulates(self):
+    def test_other_threads_run_during_a_simulation(self):
         counts, done = [0], threading.Event()
 
         def count():
@@ -337,7 +337,7 @@ class Runs(Folder):
         scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.03}, contact={"model": "mc_dem", "gamma": 1.8})
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            with self.assertRaisesRegex(RuntimeError, "no replica came to its end"):
+            with self.assertRaisesRegex(RuntimeError, "all replicas stopped early"):
                 mcdem.simulate(scene)
         self.assertTrue(any("stopped at step" in str(one.message) for one in said))
 

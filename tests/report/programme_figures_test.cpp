@@ -20,9 +20,9 @@ std::vector<std::string> figure_names(const std::vector<RunFigure>& figures) {
 }
 
 std::vector<RunFigure> figures_of(const std::vector<Setting>& settings) {
-    static Cast cast;  // static, because figures refer to it
-    cast = cast_of(settings, std::nullopt, {});
-    return programme_figures(cast);
+    static FigureData data;  // static, because figures refer to it
+    data = figure_data(settings, std::nullopt, {});
+    return programme_figures(data);
 }
 
 TEST(ProgrammeFigures, OfACellShowStressesAndStrains) {
@@ -78,8 +78,8 @@ TEST(ProgrammeCharts, AxesAreLabelled) {
 
 TEST(FigureFile, ContainsTheFiguresOfCells) {
     const Recording one = synthetic::cell("mc_dem");
-    const auto cast = cast_of({{"mc_dem", {&one}}}, std::nullopt, {});
-    const auto values = figure_values(run_figures(cast, {}), cast);
+    const auto data = figure_data({{"mc_dem", {&one}}}, std::nullopt, {});
+    const auto values = figure_values(run_figures(data, {}), data);
     EXPECT_EQ(values["pressure_time"]["x_label"], "time [s]");
     EXPECT_EQ(values["pressure_time"]["series"][0]["curves"][0]["x"].size(), 4u);
 }

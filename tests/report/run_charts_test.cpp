@@ -28,8 +28,8 @@ TEST(RunCharts, are_the_papers_four_figures_with_the_values_of_the_printed_ones)
     const auto made = run_charts(group_by_setting(run), std::nullopt);
     ASSERT_EQ(made.charts.size(), 4u);
     EXPECT_TRUE(made.notes.empty());
-    const auto cast = cast_of(group_by_setting(run), std::nullopt, {});
-    const auto values = figure_values(run_figures(cast, {}), cast);
+    const auto data = figure_data(group_by_setting(run), std::nullopt, {});
+    const auto values = figure_values(run_figures(data, {}), data);
     for (const auto& chart : made.charts) EXPECT_EQ(chart.values.dump(), values[chart.name].dump());
     EXPECT_EQ(chart_named(made, "force_distribution").title, "Contact forces at 18.0 mm, unloading");
 }

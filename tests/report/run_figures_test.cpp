@@ -22,8 +22,8 @@ Run two_models(int replicas, int contacts = 300) {
 
 nlohmann::json values_of(const std::vector<Setting>& settings, const std::optional<Setting>& reference = {},
                          const FigureOptions& options = {}) {
-    const auto cast = cast_of(settings, reference, options);
-    return nlohmann::json::parse(figure_file(figure_values(run_figures(cast, options), cast)));
+    const auto data = figure_data(settings, reference, options);
+    return nlohmann::json::parse(figure_file(figure_values(run_figures(data, options), data)));
 }
 
 TEST(RunFigures, top_forces_are_the_level_means) {
@@ -122,8 +122,8 @@ TEST(RunFigures, missing_data_are_explained) {
         for (auto& scan : recording.scans)
             scan.coordination_number = scan.mean_force = scan.packing_fraction = scan.branch_length =
                 not_available;
-    const auto cast = cast_of(group_by_setting(run), std::nullopt, {});
-    const auto made = run_figures(cast, {});
+    const auto data = figure_data(group_by_setting(run), std::nullopt, {});
+    const auto made = run_figures(data, {});
     EXPECT_EQ(made.figures.size(), 1u);
     ASSERT_EQ(made.missing.size(), 3u);
     EXPECT_THAT(made.missing[0], HasSubstr("no contacts were recorded"));

@@ -33,11 +33,11 @@ TEST(SceneErrors, ABoxInMillimetresIsDetected) {
     using testing::Contains;
     EXPECT_THAT(
         problems_in("[box]\nsize_x = 80\n"),
-        Contains(AllOf(
+        ElementsAre(AllOf(
             HasSubstr(
                 "bad.toml:2: box.size_x must be in metres, got 80, 3.26e+03 times packing.diameter_max"),
             HasSubstr("divide by 1000 if it is in millimetres"))));
-    EXPECT_THAT(problems_in("[box]\nsize_y = 80\n"), Contains(HasSubstr("box.size_y must be in metres")));
+    EXPECT_THAT(problems_in("[box]\nsize_y = 80\n"), ElementsAre(HasSubstr("box.size_y must be in metres")));
     const TestFolder folder;
     const auto two =
         folder.write("two.csv", "x_m,y_m,z_m,diameter_m\n0.01,0.01,0.01,0.02\n0.03,0.01,0.01,0.02\n");
@@ -48,8 +48,8 @@ TEST(SceneErrors, ABoxInMillimetresIsDetected) {
 
 TEST(SceneErrors, APlateInMillimetresIsDetected) {
     EXPECT_THAT(problems_in("[plate]\nstart = 156\nend = 126\n"),
-                testing::Contains(AllOf(HasSubstr("bad.toml:2: plate.start must be in metres, got 156"),
-                                        HasSubstr("divide by 1000 if it is in millimetres"))));
+                ElementsAre(AllOf(HasSubstr("bad.toml:2: plate.start must be in metres, got 156"),
+                                  HasSubstr("divide by 1000 if it is in millimetres"))));
     EXPECT_NO_THROW(parse_scene("[plate]\nstart = 0.5\n", "high.toml"));
 }
 

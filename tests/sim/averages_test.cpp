@@ -39,7 +39,7 @@ TEST(Averages, DeepestOverlapOfTwoGrainsIsFound) {
     fill_averages(scan, {1, 1}, {0.15, 0.1, 0.16}, 0);
     EXPECT_NEAR(scan.max_overlap, (0.125 - 0.1) / 0.125, 1e-12) << "0.01 of 0.13 for the other pair";
     fill_averages(scan, {1, 1}, {0.1, 0.08, 0.1}, 0);
-    EXPECT_EQ(scan.max_overlap, 0) << "bulges make contacts too";
+    EXPECT_EQ(scan.max_overlap, 0) << "contacts made by surface displacement have no geometric overlap";
     scan.position[1].x() = 0.9;
     Box cell{0.51, 1};
     cell.shape = ContainerShape::periodic;

@@ -146,7 +146,7 @@ public:
         mcdem::IntervalResult result;
         result.steps = steps;
         result.wall_force[plate_wall] = {0, 0, force()};
-        plate_.made(result);
+        plate_.on_interval_done(result);
     }
     bool arrived() const { return plate_.arrived(farthest); }
     double force() const { return stiffness_ * std::max(0.0, -true_z_); }
@@ -198,9 +198,9 @@ TEST(PlateCompliance, NoScanBeforeThePlateArrives) {
     mcdem::IntervalResult still;
     still.steps = 60;
     still.elastic_energy = 1;
-    for (int k = 0; k < 5; ++k) runner.made(still, false);
+    for (int k = 0; k < 5; ++k) runner.on_interval_done(still, false);
     EXPECT_EQ(runner.state().stage, mcdem::ProtocolState::Stage::relax);
-    for (int k = 0; k < 2; ++k) runner.made(still, true);
+    for (int k = 0; k < 2; ++k) runner.on_interval_done(still, true);
     EXPECT_EQ(runner.state().stage, mcdem::ProtocolState::Stage::move);
 }
 
@@ -210,7 +210,7 @@ TEST(PlateCompliance, RigidPlateIsUnchanged) {
     mcdem::IntervalResult result;
     result.steps = 17;
     result.wall_force[plate_wall] = {0, 0, 5};
-    plate.made(result);
+    plate.on_interval_done(result);
     plate.deflect(interval, 1e-4, 1e-4);
     EXPECT_EQ(interval.plate_z, 0.1);
     EXPECT_EQ(interval.plate_velocity, -0.03);

@@ -37,9 +37,9 @@ public:
         kinetic_.push_back(kinetic);
         elastic_.push_back(elastic);
         const std::size_t n = kinetic_.size();
-        most_ = std::max(most_, kinetic);
+        max_ = std::max(max_, kinetic);
         if (n >= 3 && kinetic_[n - 2] > kinetic && kinetic_[n - 2] >= kinetic_[n - 3] &&
-            kinetic_[n - 2] > 0.1 * most_)
+            kinetic_[n - 2] > 0.1 * max_)
             peaks_.push_back(n - 2);
     }
     bool done() const { return peaks_.size() >= peaks_wanted; }
@@ -58,13 +58,13 @@ public:
     /// last ten oscillations.
     double drift() const {
         const int last = peaks_.size() - 1;
-        return (energy(last - 20, last - 1) - energy(0, 19)) / most_ / (oscillations - 10);
+        return (energy(last - 20, last - 1) - energy(0, 19)) / max_ / (oscillations - 10);
     }
 
 private:
     std::vector<double> kinetic_, elastic_;
     std::vector<std::size_t> peaks_;
-    double most_ = 0;
+    double max_ = 0;
 };
 
 std::vector<Record> ring(const std::vector<Start>& starts) {

@@ -52,7 +52,7 @@ private:
             ASSERT_LE(intervals.back().steps, longest);
             ASSERT_LT(intervals.size(), 100000u);
             steps += intervals.back().steps;
-            if (const auto scan = runner.made(answer(intervals.back().steps, kinetic)))
+            if (const auto scan = runner.on_interval_done(answer(intervals.back().steps, kinetic)))
                 scans.push_back(*scan);
             progress.push_back(runner.progress());
         }
@@ -186,7 +186,7 @@ struct Pressed {
             result.wall_force[static_cast<int>(Wall::plate)] = {0, 0, force};
             result.wall_force[static_cast<int>(Wall::floor)] = {0, 0, -force};
             const double last = runner.state().pressure;
-            if (const auto scan = runner.made(result)) scans.push_back(*scan);
+            if (const auto scan = runner.on_interval_done(result)) scans.push_back(*scan);
             pressure.push_back(last);
             intervals.push_back(interval);
         }
@@ -229,8 +229,8 @@ TEST(Protocol, ThePlateWaitsWhileGrainsRearrange) {
     const auto speed_after = [&](double energy) {
         ProtocolRunner runner(replica, time_step, grains);
         const auto five_steps = [](const StepInterval&) { return 5; };
-        while (runner.state().stage == ProtocolState::Stage::relax) runner.made(answer(10, 0));
-        runner.made(answer(runner.next(five_steps).steps, energy));
+        while (runner.state().stage == ProtocolState::Stage::relax) runner.on_interval_done(answer(10, 0));
+        runner.on_interval_done(answer(runner.next(five_steps).steps, energy));
         return std::abs(runner.next(five_steps).plate_velocity);
     };
     replica.protocol.rate_tolerance = 0.02;
@@ -264,7 +264,7 @@ std::vector<StepInterval> stroke_above_grains(double weight) {
         // Half of the way is plastic: on the way up the plate leaves the grains at 0.125 m.
         const double surface = interval.plate_velocity < 0 ? grains.top : (grains.top + lowest) / 2;
         result.wall_force[static_cast<int>(Wall::plate)] = {0, 0, 1e3 * std::max(0.0, surface - z)};
-        runner.made(result);
+        runner.on_interval_done(result);
         if (interval.plate_velocity != 0) moves.push_back(interval);
     }
     return moves;
@@ -294,10 +294,10 @@ TEST(Protocol, APlateThatTouchesNoGrainIsFast) {
 TEST(Protocol, WithoutAToleranceTheSpeedIsThatOfTheScene) {
     Replica replica = replica_of(1, 4, false);
     ProtocolRunner runner(replica, time_step, scale);
-    while (runner.state().stage == ProtocolState::Stage::relax) runner.made(answer(10, 0));
+    while (runner.state().stage == ProtocolState::Stage::relax) runner.on_interval_done(answer(10, 0));
     EXPECT_NEAR(runner.next([](const StepInterval&) { return 5; }).plate_velocity, -0.5, 1e-9);
     const double strain_rate = 0.5 / replica.plate.start, min_pressure = 1e-5 * replica.grains.youngs_modulus;
-    ASSERT_FALSE(runner.made(answer(5, 0)));
+    ASSERT_FALSE(runner.on_interval_done(answer(5, 0)));
     EXPECT_NEAR(runner.state().rate_error,
                 10 * strain_rate * 0.02 * std::sqrt(replica.grains.density / min_pressure), 1e-6 * 10)
         << "the estimate is there all the same";
@@ -344,7 +344,7 @@ TEST(Protocol, ContinuesFromItsSavedState) {
         ASSERT_EQ(one.steps, two.steps) << "round " << round;
         ASSERT_EQ(one.plate_z, two.plate_z);
         ASSERT_EQ(one.plate_velocity, two.plate_velocity);
-        runner.made(answer(one.steps, 0));
+        runner.on_interval_done(answer(one.steps, 0));
     }
     runner.stop();
     EXPECT_TRUE(runner.finished());

@@ -127,7 +127,7 @@ TEST(RandomCellProgrammes, EndAndScanAtThePrescribedValues) {
             }
             const Stage& stage =
                 replica.programme[static_cast<std::size_t>(legs[static_cast<std::size_t>(leg)].stage)];
-            if (!runner.made(result)) continue;
+            if (!runner.on_interval_done(result)) continue;
             ++scans;
             if (++level < stage.scans || stage.kind != StageKind::move || !replica.protocol.stop_at_scans)
                 continue;
@@ -172,7 +172,7 @@ std::vector<Strain> scans_of_spring(ProtocolRunner& runner) {
         Strain strain = interval.strain;
         for (std::size_t k = 0; k < 6; ++k) strain[k] += interval.strain_rate[k] * interval.steps * time_step;
         result.stress = spring_stress(strain);
-        if (runner.made(result)) scans.push_back(strain);
+        if (runner.on_interval_done(result)) scans.push_back(strain);
     }
     return scans;
 }
@@ -252,7 +252,7 @@ TEST(StressOfACell, UnreachableStressEndsTheProgramme) {
             IntervalResult result;
             result.steps = interval.steps;
             result.stress = one.stress * Mat3::Identity();
-            EXPECT_FALSE(runner.made(result));
+            EXPECT_FALSE(runner.on_interval_done(result));
         }
         EXPECT_NE(runner.hindrance().find(one.why), std::string::npos) << runner.hindrance();
         EXPECT_NE(runner.hindrance().find("the stress 100 Pa along "), std::string::npos)

@@ -113,7 +113,7 @@ TEST(RandomProgrammes, EndAndScanAtThePrescribedValues) {
             result.wall_force[static_cast<int>(Wall::plate)] = {0, 0, spring_force(z)};
             result.wall_force[static_cast<int>(Wall::floor)] = {0, 0, -spring_force(z)};
             const int leg = runner.state().leg;
-            if (const auto scan = runner.made(result)) {
+            if (const auto scan = runner.on_interval_done(result)) {
                 EXPECT_GT(scan->time, before);
                 before = scan->time;
                 EXPECT_EQ(scan->frame, static_cast<int>(scans.size()));

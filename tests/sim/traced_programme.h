@@ -44,8 +44,8 @@ inline Traced trace(const mcdem::Scene& scene, int r, Packing packing) {
         const auto before = runner.state();
         plate.deflect(interval, dt, engine.max_plate_move(0));
         const auto result = engine.advance({interval}).front();
-        plate.made(result);
-        const auto scan = runner.made(result, plate.arrived(engine.max_plate_move(0)));
+        plate.on_interval_done(result);
+        const auto scan = runner.on_interval_done(result, plate.arrived(engine.max_plate_move(0)));
         const double force = result.wall_force[static_cast<int>(mcdem::Wall::plate)].z();
         traced.rows.push_back({runner.state().time, runner.plate_z(), force, before.leg, before.stage,
                                result.stress, runner.strain()});

@@ -139,7 +139,7 @@ void add_experiment(CLI::App& app, int& exit_code) {
         "  mcdem experiment import data/plate.txt data/grains.txt --set 'box.size=[0.165, 0.166]' --out "
         "out/lab\n"
         "  mcdem experiment check out/lab\n"
-        "  mcdem experiment from-run out/begun --replica mc_dem --out out/reality");
+        "  mcdem experiment from-run out/begun --replica mc_dem --out out/measured");
 }
 
 }  // namespace mcdem::cli

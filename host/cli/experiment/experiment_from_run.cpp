@@ -234,7 +234,7 @@ void add_experiment_from_run(CLI::App& experiment) {
         "written to experiment.toml, so that a diagnosis has to find them.\n"
         "Examples:\n"
         "  mcdem run scenes/small.toml --out out/begun --set protocol.scan_at_start=true\n"
-        "  mcdem experiment from-run out/begun --replica mc_dem --out out/reality");
+        "  mcdem experiment from-run out/begun --replica mc_dem --out out/measured");
     sub->callback([command] { make_experiment(*command); });
 }
 

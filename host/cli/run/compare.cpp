@@ -42,7 +42,7 @@ void print_comparison(const CompareCommand& command) {
 
 void print_figures_of_diagnosis(const CompareCommand& command, const std::filesystem::path& file) {
     if (command.runs.size() > 1)
-        throw InputError(file.string() + ": must stand alone, got more runs or diagnoses beside this one");
+        throw InputError(file.string() + ": cannot be combined with other runs or diagnoses");
     const Diagnosis diagnosis = read_diagnosis(file);
     const FolderLock lock = open_output_folder(command.out);
     print_paths(draw_figures(command.out, diagnosis_figure_values(diagnosis)), command.out);
@@ -107,8 +107,8 @@ void add_figures(CLI::App& app, int&) {
         "plate\n"
         "displacement, Z without weak contacts, scaling law; programmes: forces, stresses and strains "
         "against\n"
-        "each other and against time. Diagnosis: where, which, how far. The values are in figures.json; the\n"
-        "Python package mcdem.figures has one function per figure.\n"
+        "each other and against time. Diagnosis: location of the gap, candidate effects, gap reduction.\n"
+        "The values are in figures.json; the Python package mcdem.figures has one function per figure.\n"
         "Examples:\n"
         "  mcdem figures out/small --out out/figures\n"
         "  mcdem figures out/small --out out/figures --against out/small --setting mc_dem");

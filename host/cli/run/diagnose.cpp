@@ -160,8 +160,8 @@ void add_diagnose(CLI::App& app, int& exit_code) {
         "`mcdem experiment check DIR` reports beforehand what can be diagnosed from the data.\n"
         "Example, with a simulation as the experiment:\n"
         "  mcdem run scenes/small.toml --set protocol.scan_at_start=true --out out/begun\n"
-        "  mcdem experiment from-run out/begun --replica mc_dem --out out/reality\n"
-        "  mcdem diagnose scenes/small.toml --set contact.model=independent --experiment out/reality --out "
+        "  mcdem experiment from-run out/begun --replica mc_dem --out out/measured\n"
+        "  mcdem diagnose scenes/small.toml --set contact.model=independent --experiment out/measured --out "
         "out/diagnosis");
     sub->callback([command, &exit_code] { exit_code = run(*command); });
 }

@@ -50,10 +50,10 @@ std::vector<fs::path> draw_figures(const fs::path& folder, const nlohmann::order
 std::vector<fs::path> draw_runs(const fs::path& folder, const std::vector<Setting>& settings,
                                 const std::optional<Setting>& reference, const FigureOptions& options) {
     make_folder(folder);
-    const auto cast = cast_of(settings, reference, options);
-    const auto prepared = run_figures(cast, options);
+    const auto data = figure_data(settings, reference, options);
+    const auto prepared = run_figures(data, options);
     for (const auto& missing : prepared.missing) spdlog::info("no figure of {}", missing);
-    return draw_figures(folder, figure_values(prepared, cast));
+    return draw_figures(folder, figure_values(prepared, data));
 }
 
 std::vector<fs::path> draw_if_possible(const std::function<std::vector<fs::path>()>& draw) {

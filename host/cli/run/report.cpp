@@ -89,7 +89,7 @@ void add_report(CLI::App& app, int& exit_code) {
         "The first replica of every setting is shown in 3D. Charts need a browser of 2023 or later.\n"
         "Examples:\n"
         "  mcdem report out/small --out out/small.html\n"
-        "  mcdem report out/small out/diagnosis --out out/both.html --against out/reality");
+        "  mcdem report out/small out/diagnosis --out out/both.html --against out/measured");
     sub->callback([command, &exit_code] { exit_code = write_report(*command); });
 }
 

@@ -140,7 +140,7 @@ int report_run(const RunCommand& command, const RunSummary& summary) {
     if (!command.no_figures) figures = draw_run(command.out);
     print_paths(command, figures);
     if (failed < run.recordings.size()) return exit_done;
-    spdlog::error("no replica came to its end");
+    spdlog::error("all replicas stopped early");
     return exit_failed;
 }
 

@@ -49,10 +49,10 @@ void print_packings(const Scene& scene) {
     }
 }
 
-/// "2 cycles with 30 scans a stroke", or the size of a programme.
+/// "2 cycles with 30 scans per stroke", or the size of a programme.
 std::string strokes_text(const Replica& replica) {
     if (replica.programme.empty())
-        return fmt::format("{} cycle{} with {} scans a stroke", replica.protocol.cycles,
+        return fmt::format("{} cycle{} with {} scans per stroke", replica.protocol.cycles,
                            replica.protocol.cycles == 1 ? "" : "s", replica.protocol.scans_per_stroke);
     return fmt::format("a programme of {} stages, {} moves and holds, {} scans", replica.programme.size(),
                        leg_count(replica.programme), scan_count(replica.programme));

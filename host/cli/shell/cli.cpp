@@ -25,7 +25,8 @@ const char* const first_steps =
     "First steps:\n"
     "  mcdem devices                                      list the devices\n"
     "  mcdem run scenes/small.toml --out out/small        a first run, takes seconds\n"
-    "  mcdem run scenes/compression.toml --out out/first  the experiment, seven contact models\n"
+    "  mcdem run scenes/compression.toml --out out/first  a compression like the paper's, seven contact "
+    "models\n"
     "  mcdem table out/first                              top force of each model\n"
     "  mcdem report out/small --out out/small.html        HTML page with charts and packings\n"
     "  mcdem diagnose --help                              compare a scene with an experiment\n"
@@ -63,8 +64,8 @@ void finish_options(CLI::App& app) {
         if (option->get_items_expected_max() == 1) option->capture_default_str();
         const std::string name = option->get_single_name();
         if (name == "out" || name == "library" || name == "truth")
-            option->check([](const std::string& place) {
-                return place.empty() ? std::string("must name a place, got nothing") : std::string();
+            option->check([](const std::string& path) {
+                return path.empty() ? std::string("must be a path, got nothing") : std::string();
             });
     }
     for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -123,7 +124,7 @@ int run_cli(int argc, const char* const* argv) {
         set_up_streams();
         set_up_messages();
     } catch (const std::bad_alloc&) {  // no memory for a message
-        std::fputs("mcdem: needs more memory than there is\n", stderr);
+        std::fputs("mcdem: not enough memory\n", stderr);
         return exit_failed;
     }
     try {

@@ -73,7 +73,7 @@ int report_error(const std::exception& error) {
     else if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
         spdlog::error("{}: {}", file->path1().string(), file->code().message());
     else if (dynamic_cast<const std::bad_alloc*>(&error))
-        spdlog::error("needs more memory than there is");
+        spdlog::error("not enough memory");
     else
         say_lines(error.what());
     return exit_failed;

@@ -264,14 +264,14 @@ void DiagnosisBuilder::confirm_held_out(std::size_t proposal, const Eigen::Matri
 double DiagnosisBuilder::refining_factor(std::size_t candidate, double most) const {
     constexpr double unnoticed = 4;  // gain in log likelihood that also occurs by chance
     const Candidate& numerics = data_.candidates[candidate];
-    double reality = statistics_.fits[candidate].amplitude + statistics_.fits[candidate].error;
+    double amplitude = statistics_.fits[candidate].amplitude + statistics_.fits[candidate].error;
     for (const Proposal& p : findings_.proposals)
         for (std::size_t k = 0; k < p.candidates.size(); ++k)
-            if (p.candidates[k] == candidate && p.confirmed_gain) reality = p.amplitudes[k] + p.errors[k];
-    reality = std::min(reality, numerics.high);
+            if (p.candidates[k] == candidate && p.confirmed_gain) amplitude = p.amplitudes[k] + p.errors[k];
+    amplitude = std::min(amplitude, numerics.high);
     for (double factor = 2; factor < most; factor *= 2) {
         const Eigen::VectorXd left =
-            numerics.signature->at(reality) - numerics.signature->at(std::min(1 - 1 / factor, reality));
+            numerics.signature->at(amplitude) - numerics.signature->at(std::min(1 - 1 / factor, amplitude));
         if (0.5 * space_.whiten(left).squaredNorm() < unnoticed) return factor;
     }
     return most;

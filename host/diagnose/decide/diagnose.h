@@ -9,11 +9,11 @@
 namespace mcdem::inline diagnose {
 
 /// Builds a diagnosis step by step. The evidence must outlive it.
-///     DiagnosisBuilder draft(evidence, limits);
-///     for (k ..) draft.confirm(k, runs of draft.whole_fit(k));   // real runs of the proposals, optional
-///     while (draft.refit(..)) ..                                 // again with corrected parameters
-///     while (k = draft.wants_held_out()) draft.confirm_held_out(k, runs of draft.part_fit(k));
-///     draft.diagnosis()
+///     DiagnosisBuilder builder(evidence, limits);
+///     for (k ..) builder.confirm(k, runs of builder.whole_fit(k));   // real runs of the proposals, optional
+///     while (builder.refit(..)) ..                                 // again with corrected parameters
+///     while (k = builder.wants_held_out()) builder.confirm_held_out(k, runs of builder.part_fit(k));
+///     builder.diagnosis()
 class DiagnosisBuilder {
 public:
     /// Throws InputError if observation and library have too few common cells.

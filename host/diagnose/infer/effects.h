@@ -26,7 +26,7 @@ struct NumericalSetting {
     double* value;
 };
 
-/// A way in which reality may differ from the model; the amplitude is zero for the unchanged model.
+/// A way in which an experiment may differ from the model; the amplitude is zero for the unchanged model.
 struct Effect {
     std::string_view name;
     std::string_view words;         ///< in texts; empty: the name with blanks

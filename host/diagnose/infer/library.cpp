@@ -119,9 +119,9 @@ Library read_library(const std::filesystem::path& file) {
     try {
         return library_of(json::parse(text));
     } catch (const json::exception& error) {
-        throw InputError(fmt::format(
-            "{}: not a signature library ({}): give another file, which is made where it is missing",
-            file.string(), error.what()));
+        throw InputError(
+            fmt::format("{}: not a signature library ({}): give another file name; it is created if missing",
+                        file.string(), error.what()));
     }
 }
 

@@ -13,7 +13,7 @@ namespace {
 struct Side {
     int contact;
     Vec3 direction;  ///< outward from the grain's centre
-    double push;
+    double normal_force;
 };
 
 /// Outward displacement, over (1 + nu) F/(4 pi E R), of the surface at an angle from a force: the paper's Eq.
@@ -47,15 +47,16 @@ private:
         c.partner = contact.partner;
         c.force = contact.force;
         const double gap = is_wall(contact.partner) ? meet_wall(c) : meet_grain(c);
-        c.push = -c.force.dot(c.normal);
-        c.tangential = (c.force + c.push * c.normal).norm();
+        c.normal_force = -c.force.dot(c.normal);
+        c.tangential = (c.force + c.normal_force * c.normal).norm();
         const double modulus = reduced_modulus(is_wall(contact.partner));
-        const double size = 3 * std::abs(c.push) / (4 * modulus * c.reduced_radius * c.reduced_radius);
-        c.implied = std::copysign(std::cbrt(size * size), c.push);
+        const double size =
+            3 * std::abs(c.normal_force) / (4 * modulus * c.reduced_radius * c.reduced_radius);
+        c.implied = std::copysign(std::cbrt(size * size), c.normal_force);
         c.measured = -gap / c.reduced_radius;
         const int index = static_cast<int>(list_.size());
-        sides_[c.grain].push_back({index, c.normal, c.push});
-        if (!is_wall(c.partner)) sides_[c.partner].push_back({index, -c.normal, c.push});
+        sides_[c.grain].push_back({index, c.normal, c.normal_force});
+        if (!is_wall(c.partner)) sides_[c.partner].push_back({index, -c.normal, c.normal_force});
         list_.push_back(c);
     }
 
@@ -91,8 +92,8 @@ private:
         for (const Side& at : sides) {
             double sum = 0;
             for (const Side& from : sides)
-                if (&from != &at && from.push > 0)
-                    sum += from.push * displacement_on_sphere(at.direction.dot(from.direction), nu);
+                if (&from != &at && from.normal_force > 0)
+                    sum += from.normal_force * displacement_on_sphere(at.direction.dot(from.direction), nu);
             ContactResidual& c = list_[at.contact];
             c.cross_contact += scale * sum / c.reduced_radius;
         }

@@ -22,7 +22,7 @@ struct ContactResidual {
     int grain = 0, partner = 0;  ///< as in Contact
     Vec3 normal = Vec3::Zero();  ///< from grain to partner
     Vec3 force = Vec3::Zero();   ///< on grain [N]
-    double push = 0;             ///< normal force, positive for repulsion [N]
+    double normal_force = 0;     ///< normal force, positive for repulsion [N]
     double tangential = 0;       ///< magnitude of the tangential force [N]
     double reduced_radius = 0;   ///< R* [m]
     double implied = 0;          ///< overlap at which Hertz's law gives the force; negative for attraction

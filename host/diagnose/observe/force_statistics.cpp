@@ -57,10 +57,10 @@ std::array<double, 5> wall_loads(const Recording& recording, const Scan& scan) {
                 floor += contact.force.z();
                 break;
             case Wall::plate: {
-                const double push = -contact.force.z();
-                plate += push;
-                couple_x += push * (contact.point.x() / half_x - 1);
-                couple_y += push * (contact.point.y() / half_y - 1);
+                const double normal_force = -contact.force.z();
+                plate += normal_force;
+                couple_x += normal_force * (contact.point.x() / half_x - 1);
+                couple_y += normal_force * (contact.point.y() / half_y - 1);
                 break;
             }
             default:
@@ -144,12 +144,12 @@ std::array<double, 4> fabric(const Recording& recording, const Scan& scan,
     double total = 0, vertical = 0, pulls = 0;
     std::vector<double> height, force;
     for (const ContactResidual& c : contacts) {
-        total += c.push;
-        vertical += c.push * c.normal.z() * c.normal.z();
-        pulls += c.push < 0 ? 1 : 0;
+        total += c.normal_force;
+        vertical += c.normal_force * c.normal.z() * c.normal.z();
+        pulls += c.normal_force < 0 ? 1 : 0;
         if (is_wall(c.partner)) continue;
         height.push_back(scan.position[c.grain].z() + 0.5 * recording.diameter[c.grain] * c.normal.z());
-        force.push_back(c.push);
+        force.push_back(c.normal_force);
     }
     return {vertical / total - 1.0 / 3, -slope(height, force) * scan.plate_z / mean(force),
             non_affine_displacement(recording, scan), pulls / static_cast<double>(contacts.size())};
@@ -185,10 +185,11 @@ std::array<double, 6> friction_numbers(const Recording& recording, const Scan&,
                                        const ReferenceMaterial& material) {
     std::vector<double> grains, walls;
     double pushes = 0;
-    for (const ContactResidual& c : contacts) pushes += c.push / static_cast<double>(contacts.size());
+    for (const ContactResidual& c : contacts) pushes += c.normal_force / static_cast<double>(contacts.size());
     // Weak contacts between hardly overlapping grains have the least accurate directions.
     for (const ContactResidual& c : contacts)
-        if (c.push > 0.3 * pushes) (is_wall(c.partner) ? walls : grains).push_back(c.tangential / c.push);
+        if (c.normal_force > 0.3 * pushes)
+            (is_wall(c.partner) ? walls : grains).push_back(c.tangential / c.normal_force);
     const double mu = material.friction;
     const double sliding = mu > 0 ? part(grains, 0.8 * mu, 1.2 * mu) : not_available;
     const double grain_mean = mean(grains), wall_mean = mean(walls);

@@ -42,7 +42,7 @@ std::vector<std::string> needed_to_diagnose(const Experiment& experiment) {
     if (recording.scans.empty() || recording.scans.front().position.empty())
         needed.push_back(
             "grains.csv must have the positions of frame 0: simulations start from them, and the force on a "
-            "plate alone does not tell how the grains lie (a row: 0,grain,x_m,y_m,z_m,diameter_m)");
+            "plate does not determine the positions (a row: 0,grain,x_m,y_m,z_m,diameter_m)");
     const bool loads = std::ranges::any_of(recording.scans, [&](const Scan& scan) {
         return scan.phase == Phase::load && scan.plate_z < recording.plate_start;
     });

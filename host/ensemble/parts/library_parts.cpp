@@ -19,18 +19,18 @@ public:
         : options_(options),
           lock_(options.folder, FolderLock::Use::shared),
           store_(options.folder / "simulations"),
-          question_(std::move(plan.question)) {
+          common_(std::move(plan.common)) {
         if (options.library && std::filesystem::exists(*options.library)) return;
         auto trials = library_trials(plan.library);
         if (options.paper_metrics) keep_recordings(trials);
-        parts_ = parts_of_trials(question_, trials);
+        parts_ = parts_of_trials(common_, trials);
     }
 
     std::vector<std::size_t> missing() override {
         const auto device = read_manifest(device_file(options_.folder));
         std::vector<std::size_t> numbers;
         for (std::size_t k = 0; k < parts_.size(); ++k)
-            if (!device || !are_observed(device->at("device"), question_, parts_[k], store_))
+            if (!device || !are_observed(device->at("device"), common_, parts_[k], store_))
                 numbers.push_back(k);
         return numbers;
     }
@@ -40,7 +40,7 @@ public:
         if (part >= parts_.size())
             throw InputError(fmt::format(
                 "--part: must be below {}, the number of parts of the library, got {}", parts_.size(), part));
-        observe_trials(device, question_, parts_[part], store_, {on_progress, options_.stop_wanted});
+        observe_trials(device, common_, parts_[part], store_, {on_progress, options_.stop_wanted});
     }
 
     bool merge() override { return true; }
@@ -49,7 +49,7 @@ private:
     const DiagnoseOptions& options_;
     FolderLock lock_;
     ObservationStore store_;
-    Question question_;
+    TrialSettings common_;
     std::vector<std::vector<Trial>> parts_;
 };
 
@@ -118,10 +118,10 @@ DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& measure
     const Grid grid = common_grid(experiments);
     expect_alike(experiments, grid);
     for (const Experiment& experiment : experiments)
-        plan.library.specimens.push_back({model_of(scene, experiment), start_packing(experiment)});
+        plan.library.packings.push_back({model_of(scene, experiment), start_packing(experiment)});
     const Experiment& first = experiments.front();
-    const Model& model = plan.library.specimens.front().model;
-    plan.question = {scene, grid, reference_material(model), model.replica.protocol.discard, options.program};
+    const Model& model = plan.library.packings.front().model;
+    plan.common = {scene, grid, reference_material(model), model.replica.protocol.discard, options.program};
     plan.choice = choose_candidates(model, options.candidates);
     plan.library.replicates = options.replicates;
     plan.library.pairs = std::min(options.pairs, options.replicates);

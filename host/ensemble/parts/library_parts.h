@@ -16,7 +16,7 @@ void keep_recordings(std::vector<Trial>& trials);
 struct DiagnosisPlan {
     std::vector<Experiment> experiments;  ///< with the cycles that are compared
     LibraryPlan library;
-    Question question;
+    TrialSettings common;
     CandidateChoice choice;
 };
 DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& measured,

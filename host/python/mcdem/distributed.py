@@ -78,10 +78,10 @@ class Work:
                     raise RunError(f"the parts could not be merged: exit code {code}")
             if missing == before:
                 raise RunError("no part could be finished: fix the errors above first")
-            self.deal(client, missing)
+            self.submit(client, missing)
             before = missing
 
-    def deal(self, client, parts):
+    def submit(self, client, parts):
         """One task per part; waits for all. Raises InputError if the program refuses its input."""
         from distributed import as_completed
         futures = {client.submit(compute_part, self.command, self.folder, part, key=f"part-{part}-{os.urandom(4).hex()}",

@@ -40,7 +40,7 @@ def exit_code_of(error):
     elif isinstance(error, RunError):
         say(error)
     elif isinstance(error, MemoryError):
-        say("needs more memory than there is")
+        say("not enough memory")
     elif isinstance(error, OSError) and error.strerror:
         say(f"{error.filename}: {error.strerror}" if error.filename else error.strerror)
     else:

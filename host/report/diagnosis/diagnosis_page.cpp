@@ -234,8 +234,9 @@ Chart where_chart(const Diagnosis& diagnosis, const Json& values) {
         "Orange: the experiment lies above the simulation, blue: below. Time runs from left to right. Left: "
         "parameters as stated; right: after they were fitted within their uncertainty.";
     if (diagnosis.where_threshold > 0)
-        caption += fmt::format(" Framed: beyond {:.1f} sigma, which noise alone seldom reaches in any cell.",
-                               diagnosis.where_threshold);
+        caption +=
+            fmt::format(" Framed: beyond {:.1f} sigma, exceeded anywhere by noise in 1 % of the replicates.",
+                        diagnosis.where_threshold);
     return {.name = "where",
             .title = "Where simulation and experiment differ",
             .caption = caption,

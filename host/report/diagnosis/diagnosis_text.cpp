@@ -13,7 +13,7 @@
 namespace mcdem::inline report {
 namespace {
 
-constexpr std::size_t most_places = 2;  // of "where"
+constexpr std::size_t max_places = 2;  // of "where"
 constexpr std::size_t max_limits = 5;
 constexpr std::size_t max_remark_length = 160;
 
@@ -150,7 +150,7 @@ std::string where_line(const Diagnosis& diagnosis) {
     for (const auto& entry : entries) {
         if (std::ranges::find(observables, entry.observable) != observables.end()) continue;
         observables.push_back(entry.observable);
-        if (parts.size() < most_places) parts.push_back(where_words(entry));
+        if (parts.size() < max_places) parts.push_back(where_words(entry));
     }
     auto text = fmt::format("{}", fmt::join(parts, "; "));
     if (observables.size() > parts.size())

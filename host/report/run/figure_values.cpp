@@ -33,14 +33,14 @@ Json series_json(const FigureSeries& shown, bool is_reference) {
 
 }  // namespace
 
-Json figure_values(const RunFigures& figures, const Cast& cast) {
+Json figure_values(const RunFigures& figures, const FigureData& data) {
     Json values = Json::object();
     for (const auto& figure : figures.figures) {
         Json& json = values[figure.name] = {{"x_label", figure.x_label}, {"y_label", figure.y_label}};
         if (figure.displacement) json["displacement_mm"] = *figure.displacement;
         json["series"] = Json::array();
         for (const auto& series : figure.series)
-            json["series"].push_back(series_json(series, cast.is_reference(*series.series)));
+            json["series"].push_back(series_json(series, data.is_reference(*series.series)));
     }
     return values;
 }

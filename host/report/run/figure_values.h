@@ -8,7 +8,7 @@
 
 namespace mcdem::inline report {
 
-nlohmann::ordered_json figure_values(const RunFigures& figures, const Cast& cast);
+nlohmann::ordered_json figure_values(const RunFigures& figures, const FigureData& data);
 
 std::string figure_file(const nlohmann::ordered_json& figures);
 

@@ -29,14 +29,15 @@ std::string key_words(const Setting& setting) { return shortened(words_for(setti
 
 bool is_programme(const Series& series) { return follows_programme(series.setting.replicas); }
 
-void add_each(const Cast& cast, RunFigure& figure, const std::function<FigureSeries(const Series&)>& make) {
+void add_each(const FigureData& data, RunFigure& figure,
+              const std::function<FigureSeries(const Series&)>& make) {
     const auto add = [&](const Series& series) {
         if (is_programme(series)) return;  // a programme has no levels
         auto shown = make(series);
         if (!shown.curves.empty()) figure.series.push_back(std::move(shown));
     };
-    for (const auto& series : cast.simulated) add(series);
-    if (cast.reference) add(*cast.reference);
+    for (const auto& series : data.simulated) add(series);
+    if (data.reference) add(*data.reference);
 }
 
 /// The known levels of one phase. Unloading starts at the turning point, the last level of loading, which is
@@ -68,9 +69,9 @@ std::vector<FigureCurve> curves_of(const std::vector<LevelMean>& means) {
     return curves_of([&](Phase phase) { return curve_points(means, phase); });
 }
 
-RunFigure top_force_figure(const Cast& cast) {
+RunFigure top_force_figure(const FigureData& data) {
     RunFigure figure{"top_force", "plate displacement [mm]", "top force [N]", {}, {}};
-    add_each(cast, figure, [](const Series& series) -> FigureSeries {
+    add_each(data, figure, [](const Series& series) -> FigureSeries {
         const bool known = series.comparison && series.comparison->Rtop.available();
         return {&series, known ? fmt::format("Rtop {:.2f}", series.comparison->Rtop.value) : "",
                 curves_of(level_means(series.levels, top_force))};
@@ -110,9 +111,9 @@ const Level* nearest_level_if_any(const Series& series, const FigureOptions& opt
 }
 
 /// Unloading, unless the first series was loaded nearer to the displacement, as at the turning point.
-Phase shown_phase(const Cast& cast, const FigureOptions& options) {
-    const Series* first = !cast.simulated.empty() ? &cast.simulated.front()
-                          : cast.reference        ? &*cast.reference
+Phase shown_phase(const FigureData& data, const FigureOptions& options) {
+    const Series* first = !data.simulated.empty() ? &data.simulated.front()
+                          : data.reference        ? &*data.reference
                                                   : nullptr;
     if (!first) return Phase::unload;
     const Level *load = nearest_level(*first, options, Phase::load),
@@ -122,13 +123,13 @@ Phase shown_phase(const Cast& cast, const FigureOptions& options) {
     return is_nearer ? Phase::load : Phase::unload;
 }
 
-std::vector<ShownDensity> shown_levels(const Cast& cast, const FigureOptions& options) {
-    const Phase phase = shown_phase(cast, options);
+std::vector<ShownDensity> shown_levels(const FigureData& data, const FigureOptions& options) {
+    const Phase phase = shown_phase(data, options);
     std::vector<ShownDensity> shown;
-    for (const auto& series : cast.simulated)
+    for (const auto& series : data.simulated)
         shown.push_back({&series, nearest_level_if_any(series, options, phase), {}});
-    if (cast.reference)
-        shown.push_back({&*cast.reference, nearest_level_if_any(*cast.reference, options, phase), {}});
+    if (data.reference)
+        shown.push_back({&*data.reference, nearest_level_if_any(*data.reference, options, phase), {}});
     std::erase_if(shown, [](const ShownDensity& s) { return !s.level; });
     return shown;
 }
@@ -156,17 +157,17 @@ Bins common_bins(const std::vector<ShownDensity>& shown) {
 }
 
 /// In common bins, up to a force that few contacts exceed; empty without data.
-std::vector<ShownDensity> shown_densities(const Cast& cast, const FigureOptions& options) {
-    auto shown = shown_levels(cast, options);
+std::vector<ShownDensity> shown_densities(const FigureData& data, const FigureOptions& options) {
+    auto shown = shown_levels(data, options);
     const auto bins = common_bins(shown);
     if (!(bins.largest > 0)) return {};
     for (auto& one : shown) one.density = force_density(*one.level, bins.count, bins.largest);
     return shown;
 }
 
-RunFigure distribution_figure(const Cast& cast, const FigureOptions& options) {
+RunFigure distribution_figure(const FigureData& data, const FigureOptions& options) {
     RunFigure figure{"force_distribution", "contact force f [mN]", "density p(f) [1/mN]", {}, {}};
-    for (const auto& [series, level, density] : shown_densities(cast, options)) {
+    for (const auto& [series, level, density] : shown_densities(data, options)) {
         figure.displacement = figure.displacement.value_or(level->displacement / mm);
         std::vector<FigurePoint> points;
         for (std::size_t b = 0; b < density.force.size(); ++b)
@@ -187,28 +188,28 @@ std::optional<double> threshold_of(const Series& series, const FigureOptions& op
 }
 
 /// Z of the series at its threshold; as recorded without contacts, and for the reference.
-std::vector<LevelMean> coordination_means(const Cast& cast, const Series& series,
+std::vector<LevelMean> coordination_means(const FigureData& data, const Series& series,
                                           const FigureOptions& options) {
     Eigen::ArrayXXd z = reference_coordination(series.levels, series.setting.replicas);
     if (const Coordination counted(series.levels, series.setting.replicas);
-        !cast.is_reference(series) && counted.known())
+        !data.is_reference(series) && counted.known())
         z = counted.at_threshold(threshold_of(series, options).value_or(0));
     return level_means(series.levels, z);
 }
 
-RunFigure coordination_figure(const Cast& cast, const FigureOptions& options) {
+RunFigure coordination_figure(const FigureData& data, const FigureOptions& options) {
     RunFigure figure{"coordination", "plate displacement [mm]", "contacts per grain Z", {}, {}};
-    add_each(cast, figure, [&](const Series& series) -> FigureSeries {
-        const auto tau = cast.is_reference(series) ? std::nullopt : threshold_of(series, options);
+    add_each(data, figure, [&](const Series& series) -> FigureSeries {
+        const auto tau = data.is_reference(series) ? std::nullopt : threshold_of(series, options);
         return {&series, tau ? fmt::format("tau {:.2f} mN", *tau / mN) : "",
-                curves_of(coordination_means(cast, series, options))};
+                curves_of(coordination_means(data, series, options))};
     });
     return figure;
 }
 
-RunFigure scaling_figure(const Cast& cast) {
+RunFigure scaling_figure(const FigureData& data) {
     RunFigure figure{"scaling", "⟨Z⟩⟨φ⟩⟨b⟩⟨f⟩ [mN m]", "top force F [N]", {}, {}};
-    add_each(cast, figure, [](const Series& series) -> FigureSeries {
+    add_each(data, figure, [](const Series& series) -> FigureSeries {
         const auto all = scaling_points(series.levels);
         if (std::ranges::none_of(all, [](const ScalingPoint& p) { return p.product.value > 0; }))
             return {&series, "", {}};
@@ -239,9 +240,9 @@ struct Track {
     std::vector<MeanScan> scans;
 };
 
-std::vector<Track> tracks_of(const Cast& cast, bool cells) {
+std::vector<Track> tracks_of(const FigureData& data, bool cells) {
     std::vector<Track> tracks;
-    for (const Series& series : cast.simulated)
+    for (const Series& series : data.simulated)
         if (const auto& replicas = series.setting.replicas;
             follows_programme(replicas) && are_cells(replicas) == cells)
             tracks.push_back({&series, mean_scans(replicas)});
@@ -325,31 +326,31 @@ void add_times_of_cells(const std::vector<Track>& tracks, std::vector<RunFigure>
 
 }  // namespace
 
-bool is_thresholded(const Cast& cast, const FigureOptions& options) {
+bool is_thresholded(const FigureData& data, const FigureOptions& options) {
     return std::ranges::any_of(
-        cast.simulated, [&](const Series& series) { return threshold_of(series, options).has_value(); });
+        data.simulated, [&](const Series& series) { return threshold_of(series, options).has_value(); });
 }
 
-Cast cast_of(const std::vector<Setting>& settings, const std::optional<Setting>& reference,
-             const FigureOptions& options) {
-    Cast cast;
+FigureData figure_data(const std::vector<Setting>& settings, const std::optional<Setting>& reference,
+                       const FigureOptions& options) {
+    FigureData data;
     const auto styles = styles_of(settings);
     for (std::size_t s = 0; s < settings.size(); ++s) {
         const bool programme = follows_programme(settings[s].replicas);
         auto levels = programme ? Levels() : group_levels(settings[s].replicas);
         if (programme || !levels.empty())
-            cast.simulated.push_back({key_words(settings[s]), styles[s], settings[s], std::move(levels),
+            data.simulated.push_back({key_words(settings[s]), styles[s], settings[s], std::move(levels),
                                       comparison_of(settings[s], reference, options)});
     }
     if (reference)
-        cast.reference = Series{key_words(*reference), reference_style(), *reference,
+        data.reference = Series{key_words(*reference), reference_style(), *reference,
                                 group_levels(reference->replicas), std::nullopt};
-    return cast;
+    return data;
 }
 
-std::vector<RunFigure> programme_figures(const Cast& cast) {
+std::vector<RunFigure> programme_figures(const FigureData& data) {
     std::vector<RunFigure> figures;
-    const auto plates = tracks_of(cast, false), cells = tracks_of(cast, true);
+    const auto plates = tracks_of(data, false), cells = tracks_of(data, true);
     add_plates(plates, figures);
     add_cells(cells, figures);
     auto paths = plates;
@@ -360,9 +361,9 @@ std::vector<RunFigure> programme_figures(const Cast& cast) {
     return figures;
 }
 
-RunFigures run_figures(const Cast& cast, const FigureOptions& options) {
+RunFigures run_figures(const FigureData& data, const FigureOptions& options) {
     RunFigures made;
-    if (cast.simulated.empty()) {
+    if (data.simulated.empty()) {
         made.missing.push_back("any quantity: no scans are left after the discarded cycles");
         return made;
     }
@@ -372,14 +373,14 @@ RunFigures run_figures(const Cast& cast, const FigureOptions& options) {
         else
             made.missing.push_back(missing);
     };
-    if (std::ranges::any_of(cast.simulated, &is_programme)) {
-        for (auto& figure : programme_figures(cast)) made.figures.push_back(std::move(figure));
-        if (std::ranges::all_of(cast.simulated, &is_programme)) return made;
+    if (std::ranges::any_of(data.simulated, &is_programme)) {
+        for (auto& figure : programme_figures(data)) made.figures.push_back(std::move(figure));
+        if (std::ranges::all_of(data.simulated, &is_programme)) return made;
     }
-    take(top_force_figure(cast), "the top force: it was not recorded");
-    take(distribution_figure(cast, options), "the force distribution: no contacts were recorded");
-    take(coordination_figure(cast, options), "Z: contacts per grain were not recorded");
-    take(scaling_figure(cast), "the scaling law: averages over the packing were not recorded");
+    take(top_force_figure(data), "the top force: it was not recorded");
+    take(distribution_figure(data, options), "the force distribution: no contacts were recorded");
+    take(coordination_figure(data, options), "Z: contacts per grain were not recorded");
+    take(scaling_figure(data), "the scaling law: averages over the packing were not recorded");
     return made;
 }
 

@@ -29,16 +29,16 @@ struct Series {
     std::optional<Comparison> comparison;  ///< with the reference
 };
 
-/// All data that are shown.
-struct Cast {
+/// The data of all figures of runs.
+struct FigureData {
     std::vector<Series> simulated;
     std::optional<Series> reference;
     bool is_reference(const Series& series) const { return reference && &series == &*reference; }
 };
 
 /// The settings that have scans after their discarded cycles.
-Cast cast_of(const std::vector<Setting>& settings, const std::optional<Setting>& reference,
-             const FigureOptions& options);
+FigureData figure_data(const std::vector<Setting>& settings, const std::optional<Setting>& reference,
+                       const FigureOptions& options);
 
 /// A point with the standard error of its y over replicas, NaN if unknown.
 struct FigurePoint {
@@ -51,7 +51,7 @@ struct FigureCurve {
 };
 
 struct FigureSeries {
-    const Series* series;             ///< in the cast
+    const Series* series;             ///< in the data
     std::string remark;               ///< appended to the name in the legend: "tau 4.00 mN"; may be empty
     std::vector<FigureCurve> curves;  ///< loading, unloading; only curves with points
     double slope =
@@ -72,15 +72,15 @@ struct RunFigures {
     std::vector<std::string> missing;  ///< "the force distribution: no contacts were recorded"
 };
 
-/// Holds pointers to the cast, which must outlive it.
-RunFigures run_figures(const Cast& cast, const FigureOptions& options);
+/// Holds pointers to the data, which must outlive it.
+RunFigures run_figures(const FigureData& data, const FigureOptions& options);
 
 /// Whether Z ignores weak forces.
-bool is_thresholded(const Cast& cast, const FigureOptions& options);
+bool is_thresholded(const FigureData& data, const FigureOptions& options);
 
 /// Figures of programmes that have data, scan by scan: force and displacement of a plate, stress and strain
 /// of a cell, against one another and against time. Time is shown for plates, and for cells with a hold;
 /// figures of distortion only for cells that are distorted.
-std::vector<RunFigure> programme_figures(const Cast& cast);
+std::vector<RunFigure> programme_figures(const FigureData& data);
 
 }  // namespace mcdem::report

@@ -139,9 +139,9 @@ std::string bands_words(const RunFigure& figure) {
 }
 
 /// Meaning of lines, points and bands.
-std::string phases_words(const Cast& cast, const RunFigure& figure) {
+std::string phases_words(const FigureData& data, const RunFigure& figure) {
     return std::string("Solid lines: loading, dashed: unloading.") +
-           (cast.reference ? " Points: the reference, filled: loading, open: unloading." : "") +
+           (data.reference ? " Points: the reference, filled: loading, open: unloading." : "") +
            (several_replicas(figure) ? " Bands and bars: one standard error over replicas." : "");
 }
 
@@ -159,9 +159,9 @@ std::string axes_words(const RunFigure& figure) {
 }
 
 /// Title, caption and axes that can be made logarithmic.
-Chart chart_of(const RunFigure& figure, const Cast& cast, const FigureOptions& options) {
+Chart chart_of(const RunFigure& figure, const FigureData& data, const FigureOptions& options) {
     const std::string& name = figure.name;
-    if (name == "top_force") return {name, "Force on the plate", phases_words(cast, figure), {}, "xy"};
+    if (name == "top_force") return {name, "Force on the plate", phases_words(data, figure), {}, "xy"};
     if (name == "force_distribution")
         return {name,
                 fmt::format("Contact forces at {:.1f} mm, {}ing", *figure.displacement,
@@ -172,8 +172,8 @@ Chart chart_of(const RunFigure& figure, const Cast& cast, const FigureOptions& o
     if (name == "coordination")
         return {
             name,
-            is_thresholded(cast, options) ? "Contacts per grain, weak forces left out" : "Contacts per grain",
-            phases_words(cast, figure),
+            is_thresholded(data, options) ? "Contacts per grain, weak forces left out" : "Contacts per grain",
+            phases_words(data, figure),
             {}};
     if (name == "scaling")
         return {name,
@@ -317,13 +317,13 @@ std::string main_result(const std::vector<Setting>& settings) {
 
 RunCharts run_charts(const std::vector<Setting>& settings, const std::optional<Setting>& reference,
                      const FigureOptions& options) {
-    const auto cast = cast_of(settings, reference, options);
-    const auto prepared = run_figures(cast, options);
-    const Json values = figure_values(prepared, cast);
+    const auto data = figure_data(settings, reference, options);
+    const auto prepared = run_figures(data, options);
+    const Json values = figure_values(prepared, data);
     RunCharts made;
     for (const auto& missing : prepared.missing) made.notes.push_back("No chart of " + missing + ".");
     for (const auto& figure : prepared.figures) {
-        made.charts.push_back(chart_of(figure, cast, options));
+        made.charts.push_back(chart_of(figure, data, options));
         made.charts.back().values = values.at(figure.name);
     }
     return made;

@@ -38,10 +38,10 @@ def print_mapping(mapping):
     for table in mapping:
         more = f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""
         why = f": {table.role_why}" if table.role_why else ""
-        print(f"{table.files[0]}{more}: {table.role} ({table.role_sure}{why})")
+        print(f"{table.files[0]}{more}: {table.role} ({table.role_certainty}{why})")
         entries = [(key.name, table[key.name]) for key in KEYS[table.role] if key.name in table]
         for name, of in entries + [("wall " + word, of) for word, of in sorted(table.walls.items())]:
-            print_beside(f"  {name:<13} {' + '.join(of.words):<18} {of.sure:<8}", of.why)
+            print_beside(f"  {name:<13} {' + '.join(of.words):<18} {of.certainty:<8}", of.why)
         if table.unused:
             print_beside("  not used     ", ", ".join(table.unused))
     sys.stdout.flush()

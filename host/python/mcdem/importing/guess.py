@@ -67,7 +67,7 @@ def guess_tables(files, known):
         guess_grain_lengths(table, known)
     guess_frames(tables)
     grains = _grains_so_far(tables)
-    open_ = [table for table in of_role(tables, "unused") if table.map.role_sure == UNCLEAR]
+    open_ = [table for table in of_role(tables, "unused") if table.map.role_certainty == UNCLEAR]
     for table in open_:
         guess_contacts_by_values(table, grains)
     has_plate = bool(of_role(tables, "plate"))
@@ -102,8 +102,8 @@ def wrong_rows(tables):
     """Problems in the tables of plate and grains that prevent further guesses, if their columns are known."""
     lines = []
     for table in tables:
-        columns_known = all(of.sure != UNCLEAR or "_" in key for key, of in table.map.entries.items())
-        if not columns_known or table.map.role_sure == UNCLEAR:
+        columns_known = all(of.certainty != UNCLEAR or "_" in key for key, of in table.map.entries.items())
+        if not columns_known or table.map.role_certainty == UNCLEAR:
             continue
         problems = Problems()
         if table.role == "plate":

@@ -67,9 +67,9 @@ def _guess_offset(table, grains):
         share = _Places(trial, grains).touching()
         if share > most + 0.05:
             most, best = share, offset
-    sure = "sure" if most > 0.9 else UNCLEAR if most > 0 else "likely"
+    certainty = "sure" if most > 0.9 else UNCLEAR if most > 0 else "likely"
     why = f"{100 * most:.0f} % of the pairs touch then" if most > 0 else "no pairs to tell it by"
-    table.map["id_offset"] = guess(str(best), sure, why + (": numbers of grains, frames or columns may be others" if sure == UNCLEAR else ""))
+    table.map["id_offset"] = guess(str(best), certainty, why + (": numbers of grains, frames or columns may be others" if certainty == UNCLEAR else ""))
     set_walls(table.map, unknown_partners(table, grains, best), grains)
     if len(table.map.walls) > 6:
         table.map["partner"] = guess(table.map.word("partner"), UNCLEAR, "more than six of its numbers are no grains")
@@ -82,10 +82,10 @@ def _guess_force_upwards(table, grains, box):
     if abs(as_it_is - other_way) < 0.2:
         if grains.sign[2] < 0:
             table.map["fz"] = negated(fz)
-            table.map["fz"].sure, table.map["fz"].why = UNCLEAR, "z of the grains is downwards: are the forces too? If not, remove the -"
+            table.map["fz"].certainty, table.map["fz"].why = UNCLEAR, "z of the grains is downwards: are the forces too? If not, remove the -"
     elif other_way > as_it_is:
         table.map["fz"] = negated(fz)
-        table.map["fz"].sure = UNCLEAR if fz.sure == UNCLEAR else "sure"
+        table.map["fz"].certainty = UNCLEAR if fz.certainty == UNCLEAR else "sure"
         table.map["fz"].why += (f"; the other way, for so forces lie along the lines of centres (mean cosine {other_way:.2f}, else "
                                 f"{as_it_is:.2f})")
 

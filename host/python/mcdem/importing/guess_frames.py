@@ -84,10 +84,10 @@ def _same_numbers(frames, others):
 
 
 def _by_numbers(word, frames, others, whose):
-    sure = _same_numbers(frames, others)
-    if sure != UNCLEAR:
-        return guess(word, sure, f"{whose} table has all of them")
-    return guess(word, sure, f"{_told_by(frames)} here, {_told_by(others)} there: are they the same?")
+    certainty = _same_numbers(frames, others)
+    if certainty != UNCLEAR:
+        return guess(word, certainty, f"{whose} table has all of them")
+    return guess(word, certainty, f"{_told_by(frames)} here, {_told_by(others)} there: are they the same?")
 
 
 def _in_order(frames, plate):

@@ -58,10 +58,10 @@ def _check_size(mapped, grains):
         return
     ratio = nearest_over_radii(grains.position[0], grains.diameter)
     if (0.35 < ratio < 0.6) if now == "radius" else (1.65 < ratio < 2.6):
-        mapped[now].sure = UNCLEAR
+        mapped[now].certainty = UNCLEAR
         mapped[now].why = (f"but then the nearest neighbours are {ratio:.2f} times the sum of their radii apart: is it the {other}? "
                            f"Then write {other} in place of {now}")
-    elif 0.75 < ratio < 1.25 and mapped[now].sure != UNCLEAR:
+    elif 0.75 < ratio < 1.25 and mapped[now].certainty != UNCLEAR:
         mapped[now].why += f"; neighbours touch ({ratio:.2f} of the sum of radii)"
 
 
@@ -73,7 +73,7 @@ def _unit_by_box(mapped, width, depth, known):
     spans = f"the packing is {width:.4g} by {depth:.4g} wide, the box {box_x:g} by {box_y:g} m"
     likely = "mm" if width > 0.5 else "m"
     if named:
-        if named.sure == UNCLEAR or box_x <= 0 or named.word not in factors:
+        if named.certainty == UNCLEAR or box_x <= 0 or named.word not in factors:
             return named
         if named.word in fits:
             return guess(named.word, "sure", "named so, and the packing fills the box")
@@ -153,7 +153,7 @@ def _upwards(column, now, ends, diameter):
         return guess(now.word, UNCLEAR, "the packing moves at both ends: is z upwards, and does the floor stand still?")
     if gives == "none" and high < margin and low < -margin:
         return guess(negated, UNCLEAR, reach + ": is z downwards? If not, remove the -")
-    if gives == "high" and now.sure != UNCLEAR:
+    if gives == "high" and now.certainty != UNCLEAR:
         now.why += "; upwards, because the packing moves at its upper end"
     return now
 
@@ -180,4 +180,4 @@ def guess_grains_upwards(tables):
     if any(mapped.word("z").startswith("-") for mapped, _ in told):
         for mapped, several in told:
             if not several and not mapped.word("z").startswith("-"):
-                mapped["z"].sure, mapped["z"].why = UNCLEAR, "it is downwards in another table: write a - before its name if it is here too"
+                mapped["z"].certainty, mapped["z"].why = UNCLEAR, "it is downwards in another table: write a - before its name if it is here too"

@@ -58,7 +58,7 @@ def _note_tangential(mapped, columns):
     for column in columns:
         base = column_name(column).base
         if base.startswith(("ft", "fs")) or any(word in base for word in ("tang", "shear", "scher")):
-            mapped["force"].sure = UNCLEAR
+            mapped["force"].certainty = UNCLEAR
             mapped["force"].why = f"{column} would not be used: give fx, fy, fz, or confirm that the normal part is enough"
 
 
@@ -77,11 +77,11 @@ def _note_programs(mapped, columns):
 def guess_by_names(table):
     mapped, columns, repeated = table.map, table.parts[0].columns, table.parts[0].repeated
     mapped.role = role = _role_of(columns) or "unused"
-    mapped.role_sure, mapped.role_why = ("sure", "its columns are named so") if role != "unused" else (
+    mapped.role_certainty, mapped.role_why = ("sure", "its columns are named so") if role != "unused" else (
         UNCLEAR, "its columns say nothing that is known")
     found = columns_by_key("contacts", columns)
     if role == "unused" and "grain" in found and "partner" in found and _only_touching(columns):
-        mapped.role_sure, mapped.role_why = "likely", "pairs of grains that touch, without forces: an experiment's contacts have forces"
+        mapped.role_certainty, mapped.role_why = "likely", "pairs of grains that touch, without forces: an experiment's contacts have forces"
     if role == "unused":
         return
     found = columns_by_key(role, columns)

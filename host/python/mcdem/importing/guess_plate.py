@@ -43,7 +43,7 @@ class _Plate:
 def _guess_downwards(mapped, rows):
     """Guesses the direction: the force increases while the plate moves down."""
     place = "displacement" if "displacement" in mapped else "plate_z"
-    if len(rows) < 3 or mapped[place].sure == UNCLEAR or not np.isfinite(rows.z).any():
+    if len(rows) < 3 or mapped[place].certainty == UNCLEAR or not np.isfinite(rows.z).any():
         return
     low, high, force = np.nanmin(rows.z), np.nanmax(rows.z), np.abs(rows.force)
     above = np.nanmean(force[rows.z >= high - 0.2 * (high - low)])
@@ -90,7 +90,7 @@ def _guess_height(mapped, plate, start, factors):
     goes_down = "displacement" in mapped
     fits, seen = _height_fits(plate, start, goes_down, factors)
     named = mapped.get("length_unit")
-    if named and (named.sure == UNCLEAR or named.word not in factors or (not seen if not fits else named.word in fits)):
+    if named and (named.certainty == UNCLEAR or named.word not in factors or (not seen if not fits else named.word in fits)):
         return
     if named:
         mapped["length_unit"] = guess(named.word, UNCLEAR, "the columns' names say so, but " + seen)
@@ -107,7 +107,7 @@ def _contact_forces(tables, grains):
     sums = np.full(len(grains.keys), np.nan)
     for table in of_role(tables, "contacts"):
         unit = table.map.get("force_unit")
-        if not unit or unit.sure == UNCLEAR:
+        if not unit or unit.certainty == UNCLEAR:
             continue
         frames = import_contacts(table, grains, Problems())
         at = grains.frames_of(table.map.word("frames_by", "plate"), frames.keys)
@@ -119,7 +119,7 @@ def _contact_forces(tables, grains):
 
 
 def _unclear_lengths(mapped):
-    return any(key in mapped and mapped[key].sure == UNCLEAR for key in ("length_unit", "voxel_size", "origin_z", "same_diameter"))
+    return any(key in mapped and mapped[key].certainty == UNCLEAR for key in ("length_unit", "voxel_size", "origin_z", "same_diameter"))
 
 
 def _guess_force(table, others, plate, known):
@@ -142,7 +142,7 @@ def _guess_force(table, others, plate, known):
     if named and not has_sum:  # Hertz's law is rough for strong compression and errors of position
         clear = np.isfinite(ratio) and not any(_unclear_lengths(table.map) for table in (*others, table))
         fits = fitting_units(FORCE_FACTORS, ratio, 1, 1 / 30, 30) if clear else [named.word]
-    if named and (named.sure == UNCLEAR or named.word in fits):
+    if named and (named.certainty == UNCLEAR or named.word in fits):
         return
     if named:
         mapped["force_unit"] = guess(named.word, UNCLEAR, "the columns' names say so, but " + seen)

@@ -57,7 +57,7 @@ def guess_grains_by_values(table):
         ratio = nearest_over_radii(position, size)
         size_key = "diameter" if 0.75 < ratio < 1.25 else "radius" if 1.5 < ratio < 2.5 else None
         if size_key:
-            mapped.role, mapped.role_sure = "grains", "likely"
+            mapped.role, mapped.role_certainty = "grains", "likely"
             mapped.role_why = f"columns {c + 1} to {c + 4} taken for spheres touch one another"
             for k, axis in enumerate("xyz"):
                 mapped[axis] = guess(part.columns[c + k], "likely", "the usual order")
@@ -111,7 +111,7 @@ def guess_contacts_by_values(table, grains):
         others = sum((c < best or c > best + 2) and _has_numbers(column) and not _all_whole(column) for c, column in enumerate(columns))
         seen = f"one of {good} triples of columns that point" if good > 1 else \
             "other columns may hold a tangential part to be added; points" if others >= 3 else "points"
-        mapped.role, mapped.role_sure, mapped.role_why = "contacts", "likely", "two columns name grains that touch"
+        mapped.role, mapped.role_certainty, mapped.role_why = "contacts", "likely", "two columns name grains that touch"
         mapped["grain"] = guess(part.columns[a], "likely", "names grains that touch those of the next column")
         mapped["partner"] = guess(part.columns[a + 1], "likely", "names grains that touch those of the column before")
         for k, axis in enumerate("xyz" if most > 0 else ""):
@@ -125,7 +125,7 @@ def guess_plate_by_values(table):
     part, mapped = table.parts[0], table.map
     named = {key: names for key, names in columns_by_key("plate", part.columns).items() if key in ("plate_z", "displacement", "top_force")}
     if named:
-        mapped.role, mapped.role_sure = "plate", UNCLEAR
+        mapped.role, mapped.role_certainty = "plate", UNCLEAR
         missing = "top_force" if "top_force" not in named else "plate_z or displacement"
         others = [name for name in part.columns if name not in {names[0] for names in named.values()}]
         mapped.role_why = f"no column is named as {missing}, which a plate's table must have; other columns: {', '.join(others) or 'none'}"
@@ -137,7 +137,7 @@ def guess_plate_by_values(table):
         return
     first = columns[numeric[0]]
     counts = len(numeric) > 2 and not (np.diff(first) <= 0).any()
-    mapped.role, mapped.role_sure, mapped.role_why = "plate", UNCLEAR, "no names, no grains"
+    mapped.role, mapped.role_certainty, mapped.role_why = "plate", UNCLEAR, "no names, no grains"
     if counts:
         mapped["frame"] = guess(part.columns[numeric[0]], UNCLEAR, "rises from row to row")
     mapped["plate_z"] = guess(part.columns[numeric[counts]], UNCLEAR, "by its place only")

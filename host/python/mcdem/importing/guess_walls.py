@@ -93,14 +93,14 @@ def guess_walls(table, frames, grains, known):
         if not named:
             ways, counts = np.unique(walls[of_name], return_counts=True)
             if len(ways) and counts.max() > 0.9 * counts.sum():
-                wall.words, wall.sure = [WALLS[-1 - ways[np.argmax(counts)]]], "likely"
+                wall.words, wall.certainty = [WALLS[-1 - ways[np.argmax(counts)]]], "likely"
                 wall.why = f"{counts.max()} of its {counts.sum()} forces point away from there"
             else:
                 wall.why += "; its forces point several ways"
         if (box[0] > 0 and touching < 0.9 * all_of) or (not named and (all_of == 0 or box[0] <= 0)):
-            wall.sure = UNCLEAR
+            wall.certainty = UNCLEAR
             wall.why += (f"; {touching} of its {all_of} contacts are of grains that are at that wall: is it a grain that is not in the "
                          "grains' table?")
         elif not named and name in for_grains and for_partners:
-            wall.sure = UNCLEAR
+            wall.certainty = UNCLEAR
             wall.why += "; but it stands for a grain, and walls stand for partners"

@@ -16,7 +16,7 @@ UNCLEAR = "unclear"  # in addition to stated, sure, likely: must be confirmed in
 @dataclass
 class Guess:
     words: list  # a word, or columns: "-z" if z is reversed
-    sure: str = "stated"
+    certainty: str = "stated"
     why: str = ""
 
     @property
@@ -24,8 +24,8 @@ class Guess:
         return self.words[0]
 
 
-def guess(word, sure, why):
-    return Guess([word], sure, why)
+def guess(word, certainty, why):
+    return Guess([word], certainty, why)
 
 
 def signed_column(word):
@@ -34,7 +34,7 @@ def signed_column(word):
 
 def negated(of):
     """The entry with all columns reversed."""
-    return Guess([word[1:] if word.startswith("-") else "-" + word for word in of.words], of.sure, of.why)
+    return Guess([word[1:] if word.startswith("-") else "-" + word for word in of.words], of.certainty, of.why)
 
 
 class Key(NamedTuple):
@@ -117,7 +117,7 @@ def find_key(role, name):
 @dataclass
 class MappedTable:
     role: str = "unused"
-    role_sure: str = "stated"
+    role_certainty: str = "stated"
     role_why: str = ""
     line: int = 0  # in the mapping
     files: list = field(default_factory=list)  # with the same columns, in order of the frames
@@ -198,12 +198,12 @@ def _one_line(text):
 
 def _line_text(key, of, meaning):
     words = list(of.words)
-    if of.sure == UNCLEAR:
+    if of.certainty == UNCLEAR:
         words[0] = "?" + words[0]
     text = f"{key} = {toml_value(words[0] if len(words) == 1 else words)}"
-    if of.sure != "stated":
-        text += f"  # {of.sure}: {_one_line(of.why)}"
-    if of.sure == UNCLEAR and meaning:
+    if of.certainty != "stated":
+        text += f"  # {of.certainty}: {_one_line(of.why)}"
+    if of.certainty == UNCLEAR and meaning:
         text += f" ({meaning})"
     return text + "\n"
 
@@ -214,7 +214,7 @@ def _meaning(key):
 
 
 def _table_text(table):
-    text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_sure, table.role_why),
+    text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_certainty, table.role_why),
                                         "one of plate, grains, contacts, unused")
     text += f"files = {toml_value(table.files)}\n"
     if table.form:

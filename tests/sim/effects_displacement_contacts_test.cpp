@@ -1,7 +1,7 @@
 // Effect bulge_contacts: a compressed grain whose equator touches side walls, and the contacts of a packing.
 #include "reference/test_scene.h"
 
-namespace reference::effects_bulges {
+namespace reference::effects_displacement_contacts {
 namespace {
 
 constexpr double radius = 0.01;
@@ -41,7 +41,7 @@ std::vector<double> gaps() {
 
 // If displacements do not count, contact begins at geometric contact with the wall; the larger the part that
 // counts, the earlier. Forces increase from zero without a jump.
-TEST(BulgeContacts, ContactBeginsEarlierTheMoreDisplacementsCount) {
+TEST(ContactsMadeByDisplacement, ContactBeginsEarlierTheMoreDisplacementsCount) {
     std::vector<double> begins;
     for (double part : {0.0, 0.5, 1.0}) {
         const auto forces = side_forces(part, gaps());
@@ -55,16 +55,16 @@ TEST(BulgeContacts, ContactBeginsEarlierTheMoreDisplacementsCount) {
     }
     EXPECT_NEAR(begins[0], 0, 1.01e-5);
     EXPECT_GT(begins[2], 1e-4);
-    EXPECT_NEAR(begins[1], begins[2] / 2, 1.01e-5) << "half of the bulge reaches half as far";
+    EXPECT_NEAR(begins[1], begins[2] / 2, 1.01e-5) << "half of the displacement reaches half as far";
 }
 
 // At large geometric overlap all of the displacement counts, whatever the part.
-TEST(BulgeContacts, LargeGeometricOverlapsAreUnchanged) {
+TEST(ContactsMadeByDisplacement, LargeGeometricOverlapsAreUnchanged) {
     const std::vector<double> deep{-4e-4};
     EXPECT_NEAR(side_forces(0, deep).front(), side_forces(1, deep).front(), has_double() ? 1e-12 : 1e-4);
 }
 
-TEST(BulgeContacts, WithPartZeroOnlyGeometricContactsRemain) {
+TEST(ContactsMadeByDisplacement, WithPartZeroOnlyGeometricContactsRemain) {
     for (double part : {0.0, 1.0}) {
         Replica replica = test_replica(ContactModel::mc_dem);
         replica.effects.bulge_contacts = part;
@@ -73,21 +73,21 @@ TEST(BulgeContacts, WithPartZeroOnlyGeometricContactsRemain) {
         Batch batch(build(finest()), start);
         batch.advance(100);
         const auto state = batch.engine().state(0);
-        int by_bulges = 0, all = 0;
+        int without_overlap = 0, all = 0;
         for (const auto& contact : state.contacts) {
             if (mcdem::is_wall(contact.partner)) continue;
             const double apart = (state.position[contact.partner] - state.position[contact.grain]).norm();
             const auto& diameter = start.packing.diameter;
-            by_bulges += apart > (diameter[contact.grain] + diameter[contact.partner]) / 2;
+            without_overlap += apart > (diameter[contact.grain] + diameter[contact.partner]) / 2;
             ++all;
         }
         EXPECT_GT(all, 40);
         if (part == 0)
-            EXPECT_EQ(by_bulges, 0);
+            EXPECT_EQ(without_overlap, 0);
         else
-            EXPECT_GT(by_bulges, 0);
+            EXPECT_GT(without_overlap, 0);
     }
 }
 
 }  // namespace
-}  // namespace reference::effects_bulges
+}  // namespace reference::effects_displacement_contacts

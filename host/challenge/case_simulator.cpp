@@ -1,4 +1,4 @@
-#include "challenge/realities.h"
+#include "challenge/case_simulator.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 namespace mcdem::inline challenge {
 namespace {
 
-// Hidden numerics of every reality, so that the diagnosis cannot rely on identical numerics.
+// Hidden numerics of every case, so that the diagnosis cannot rely on identical numerics.
 constexpr double time_step_factor = 0.7;
 constexpr double restitution_factor = 0.95;
 constexpr double start_jitter = 0.02;  ///< over the mean diameter, so that packings with the same seed differ
@@ -38,7 +38,7 @@ GeneratedPacking generated(const Scene& scene) {
 
 }  // namespace
 
-Realities::Realities(Device& device, const Scene& scene, const Measurement& measurement)
+CaseSimulator::CaseSimulator(Device& device, const Scene& scene, const Measurement& measurement)
     : device_(device),
       scene_(scene),
       stated_{scene.replicas.front(), {measurement}, generated(scene).diameter_mean} {
@@ -47,7 +47,7 @@ Realities::Realities(Device& device, const Scene& scene, const Measurement& meas
     nuisances_ = mcdem::nuisances(stated_, {});
 }
 
-void Realities::make_packings(const std::vector<std::uint64_t>& seeds, const StopWanted& stop_wanted) {
+void CaseSimulator::make_packings(const std::vector<std::uint64_t>& seeds, const StopWanted& stop_wanted) {
     Scene all = scene_;
     all.replicas.clear();
     for (const std::uint64_t seed : seeds) {
@@ -57,11 +57,11 @@ void Realities::make_packings(const std::vector<std::uint64_t>& seeds, const Sto
     packings_ = mcdem::make_packings(all, stop_wanted);
 }
 
-std::size_t Realities::at_once() const {
+std::size_t CaseSimulator::at_once() const {
     return std::max<std::size_t>(1, max_grains_at_once / packings_.front().size());
 }
 
-Model Realities::reality_of(const ChallengeCase& c) const {
+Model CaseSimulator::model_of_case(const ChallengeCase& c) const {
     Model model = stated_;
     for (const Hidden& shift : c.nuisances)
         std::ranges::find(nuisances_, shift.name, &Nuisance::name)->apply(model, shift.amplitude);
@@ -79,13 +79,14 @@ Model Realities::reality_of(const ChallengeCase& c) const {
     return model;
 }
 
-std::vector<Recording> Realities::simulate(std::span<const ChallengeCase* const> cases, Part part,
-                                           const std::function<void(double fraction)>& on_progress) const {
+std::vector<Recording> CaseSimulator::simulate(
+    std::span<const ChallengeCase* const> cases, Part part,
+    const std::function<void(double fraction)>& on_progress) const {
     Scene batch = scene_;
     batch.replicas.clear();
     std::vector<Packing> starts;
     for (const ChallengeCase* c : cases) {
-        batch.replicas.push_back(reality_of(*c).replica);
+        batch.replicas.push_back(model_of_case(*c).replica);
         starts.push_back(packings_[c->packing]);
         apply_jitter(starts.back(), start_jitter * stated_.mean_diameter, c->seed);
     }
@@ -93,14 +94,14 @@ std::vector<Recording> Realities::simulate(std::span<const ChallengeCase* const>
     return mcdem::simulate(device_, batch, starts, part == Part::loading ? loading : SIZE_MAX, on_progress);
 }
 
-Experiment Realities::experiment(const ChallengeCase& c, Recording recording) const {
+Experiment CaseSimulator::experiment(const ChallengeCase& c, Recording recording) const {
     for (const Hidden& hidden : c.effects)
         if (const OutsideEffect* outside = find_outside_effect(hidden.name);
             outside && outside->change_reading)
             outside->change_reading(recording, hidden.amplitude);
     recording.box = stated_.replica.box;
     recording.label = c.folder;
-    return experiment_from(recording, reality_of(c).instrument, c.seed);
+    return experiment_from(recording, model_of_case(c).instrument, c.seed);
 }
 
 }  // namespace mcdem::challenge

@@ -10,10 +10,10 @@
 
 namespace mcdem::inline challenge {
 
-class Realities {
+class CaseSimulator {
 public:
     /// Throws InputError if the scene is unsuitable for a challenge.
-    Realities(Device& device, const Scene& scene, const Measurement& measurement);
+    CaseSimulator(Device& device, const Scene& scene, const Measurement& measurement);
 
     /// The scene with the stated properties of its instrument, without hidden effects.
     const Model& stated() const { return stated_; }
@@ -35,7 +35,7 @@ public:
     std::size_t at_once() const;
 
 private:
-    Model reality_of(const ChallengeCase& c) const;
+    Model model_of_case(const ChallengeCase& c) const;
 
     Device& device_;
     Scene scene_;
