@@ -31,10 +31,10 @@ void missing_frames(const Recording& recording, Findings& findings) {
             "unloading: viscoelasticity, plasticity and friction show in the loop that it closes");
     for (const Phase phase : {Phase::load, Phase::unload})
         if (const long frames = of_phase[static_cast<int>(phase)]; frames > 0 && frames < min_frames)
-            findings.missing(
-                plate_file,
-                "frames of {}ing, there are only {}: the displacement at which a gap opens cannot be determined",
-                name(phase), frames);
+            findings.missing(plate_file,
+                             "frames of {}ing, there are only {}: the displacement at which a gap opens "
+                             "cannot be determined",
+                             name(phase), frames);
     const Scan& first = recording.scans.front();
     if (recording.displacement(first) > rest * stroke)
         findings.missing(recording.diameter.empty() ? plate_file : grains_file,
