@@ -8,8 +8,8 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
-#include "scene/generate_packing.h"
-#include "scene/read_packing.h"
+#include "scene/packing/generate_packing.h"
+#include "scene/packing/read_packing.h"
 
 namespace mcdem::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/errors.h"
-#include "scene/make_packing.h"
+#include "scene/packing/make_packing.h"
 
 namespace mcdem::bench {
 namespace {

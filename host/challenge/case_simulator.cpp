@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "ensemble/make_packings.h"
 #include "experiment/instrument.h"
-#include "scene/make_packing.h"
+#include "scene/packing/make_packing.h"
 
 namespace mcdem::inline challenge {
 namespace {

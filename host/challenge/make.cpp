@@ -14,7 +14,7 @@
 #include "core/input_file.h"
 #include "core/make_folder.h"
 #include "io/result_folder.h"
-#include "scene/legs.h"
+#include "scene/programme/legs.h"
 
 namespace mcdem::inline challenge {
 namespace {

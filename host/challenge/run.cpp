@@ -14,12 +14,12 @@
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/sha256.h"
-#include "ensemble/library_origin.h"
+#include "ensemble/diagnosis/library_origin.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/parts/manifest.h"
 #include "io/folder_lock.h"
 #include "io/result_folder.h"
-#include "scene/legs.h"
+#include "scene/programme/legs.h"
 #include "scene/random.h"
 
 namespace mcdem::inline challenge {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/stop.h"
-#include "ensemble/diagnose_experiment.h"
+#include "ensemble/diagnosis/diagnose_experiment.h"
 #include "ensemble/parts/parted_work.h"
 
 namespace mcdem::inline challenge {

@@ -11,12 +11,12 @@
 #include "core/errors.h"
 #include "core/names.h"
 #include "core/parameters.h"
-#include "ensemble/diagnose_experiment.h"
+#include "ensemble/diagnosis/diagnose_experiment.h"
 #include "ensemble/make_packings.h"
 #include "experiment/experiment.h"
 #include "metrics/top_force.h"
-#include "scene/legs.h"
-#include "scene/packing_fields.h"
+#include "scene/packing/packing_fields.h"
+#include "scene/programme/legs.h"
 
 namespace mcdem::inline ensemble {
 namespace {

@@ -7,10 +7,10 @@
 #include <variant>
 
 #include "core/errors.h"
+#include "ensemble/diagnosis/observe_trials.h"
 #include "ensemble/make_packings.h"
-#include "ensemble/observe_trials.h"
-#include "scene/legs.h"
-#include "scene/make_packing.h"
+#include "scene/packing/make_packing.h"
+#include "scene/programme/legs.h"
 
 namespace mcdem::inline ensemble {
 namespace {

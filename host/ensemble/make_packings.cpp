@@ -8,7 +8,7 @@
 
 #include "core/errors.h"
 #include "core/in_parallel.h"
-#include "scene/make_packing.h"
+#include "scene/packing/make_packing.h"
 #include "sim/simulation.h"
 
 namespace mcdem::inline ensemble {

@@ -7,9 +7,9 @@
 
 #include "core/errors.h"
 #include "core/parameters.h"
-#include "ensemble/diagnose_experiment.h"
-#include "scene/packing_fields.h"
-#include "scene/programme_text.h"
+#include "ensemble/diagnosis/diagnose_experiment.h"
+#include "scene/packing/packing_fields.h"
+#include "scene/programme/programme_text.h"
 
 namespace mcdem::inline ensemble {
 

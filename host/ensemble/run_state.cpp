@@ -10,7 +10,7 @@
 #include "core/parameters.h"
 #include "core/sha256.h"
 #include "io/result_file.h"
-#include "scene/read_scene.h"
+#include "scene/read/read_scene.h"
 
 namespace mcdem::inline ensemble {
 namespace {

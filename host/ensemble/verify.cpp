@@ -12,7 +12,7 @@
 #include "core/input_file.h"
 #include "core/sha256.h"
 #include "diagnose/infer/library.h"
-#include "ensemble/observation_store.h"
+#include "ensemble/diagnosis/observation_store.h"
 #include "ensemble/parts/manifest.h"
 #include "experiment/experiment.h"
 #include "io/checkpoint.h"

@@ -8,7 +8,7 @@
 
 #include "core/container.h"
 #include "experiment/findings.h"
-#include "scene/programme_text.h"
+#include "scene/programme/programme_text.h"
 
 namespace mcdem::inline experiment {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/container.h"
 #include "experiment/findings.h"
-#include "scene/cell_pairs.h"
+#include "scene/packing/cell_pairs.h"
 
 namespace mcdem::inline experiment {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/median.h"
 #include "experiment/findings.h"
 #include "experiment/measurements.h"
-#include "scene/programme_text.h"
+#include "scene/programme/programme_text.h"
 
 namespace mcdem::inline experiment {
 namespace {

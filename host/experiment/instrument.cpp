@@ -11,7 +11,7 @@
 #include "core/errors.h"
 #include "core/parameters.h"
 #include "experiment/measurements.h"
-#include "scene/packing_fields.h"
+#include "scene/packing/packing_fields.h"
 #include "scene/random.h"
 
 namespace mcdem::inline experiment {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "experiment/experiment.h"
-#include "scene/table.h"
+#include "scene/packing/table.h"
 
 namespace mcdem::inline experiment {
 

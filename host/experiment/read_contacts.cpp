@@ -8,7 +8,7 @@
 #include "core/container.h"
 #include "experiment/findings.h"
 #include "experiment/measurements.h"
-#include "scene/packing_fields.h"
+#include "scene/packing/packing_fields.h"
 
 namespace mcdem::inline experiment {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "core/parameters.h"
 #include "experiment/measurements.h"
-#include "scene/packing_fields.h"
-#include "scene/programme_text.h"
+#include "scene/packing/packing_fields.h"
+#include "scene/programme/programme_text.h"
 
 namespace mcdem::inline experiment {
 namespace {

@@ -10,12 +10,12 @@
 
 #include "core/container.h"
 #include "core/input_file.h"
-#include "scene/keys.h"
-#include "scene/list_tables.h"
-#include "scene/packing_fields.h"
-#include "scene/programme_text.h"
-#include "scene/scene_checks.h"
-#include "scene/toml_text.h"
+#include "scene/packing/packing_fields.h"
+#include "scene/programme/programme_text.h"
+#include "scene/read/keys.h"
+#include "scene/read/list_tables.h"
+#include "scene/read/scene_checks.h"
+#include "scene/read/toml_text.h"
 
 namespace mcdem::inline experiment {
 namespace {

@@ -1,7 +1,7 @@
 // Reader of experiment.toml.
 #pragma once
 #include "experiment/experiment.h"
-#include "scene/problems.h"
+#include "scene/read/problems.h"
 
 namespace mcdem::inline experiment {
 

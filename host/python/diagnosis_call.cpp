@@ -9,7 +9,7 @@
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/converge_scene.h"
-#include "ensemble/diagnose_experiment.h"
+#include "ensemble/diagnosis/diagnose_experiment.h"
 #include "io/result_folder.h"
 #include "python/bindings.h"
 #include "python/watch.h"

@@ -7,7 +7,7 @@
 #include "core/version.h"
 #include "io/results.h"
 #include "python/bindings.h"
-#include "scene/read_packing.h"
+#include "scene/packing/read_packing.h"
 
 namespace mcdem::inline python {
 namespace {

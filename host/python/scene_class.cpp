@@ -6,7 +6,7 @@
 #include <charconv>
 
 #include "python/bindings.h"
-#include "scene/read_scene.h"
+#include "scene/read/read_scene.h"
 
 namespace mcdem::inline python {
 namespace {

@@ -36,7 +36,8 @@ struct Sizes {
     std::shared_ptr<const std::vector<double>> table = {};  ///< its diameters, sorted [m]
 };
 
-/// As read from a scene, with missing values filled in from [grains] and [packing] (scene/resolve_species.h).
+/// As read from a scene, with missing values filled in from [grains] and [packing]
+/// (scene/read/resolve_species.h).
 struct Species {
     std::string name;
     GrainMaterial material{not_given, not_given, not_given, not_given, not_given, not_given, 0};

@@ -8,8 +8,8 @@
 
 #include "core/container.h"
 #include "core/errors.h"
-#include "scene/cell_path.h"
-#include "scene/legs.h"
+#include "scene/programme/cell_path.h"
+#include "scene/programme/legs.h"
 #include "sim/device_material.h"
 #include "sim/device_replica.h"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "cl/program.h"
-#include "scene/make_packing.h"
+#include "scene/packing/make_packing.h"
 #include "sim/fields.h"
 
 namespace mcdem::inline sim {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/vec3.h"
-#include "scene/legs.h"
+#include "scene/programme/legs.h"
 #include "sim/force_control.h"
 
 namespace mcdem::inline sim {

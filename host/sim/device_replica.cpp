@@ -9,8 +9,8 @@
 
 #include "core/container.h"
 #include "elasticity/surface_displacement.h"
-#include "scene/make_packing.h"
-#include "scene/true_grains.h"
+#include "scene/packing/make_packing.h"
+#include "scene/packing/true_grains.h"
 #include "sim/device_material.h"
 
 namespace mcdem::inline sim {

@@ -7,7 +7,7 @@
 #include "core/container.h"
 #include "core/errors.h"
 #include "core/stress.h"
-#include "scene/true_grains.h"
+#include "scene/packing/true_grains.h"
 #include "sim/batch_limits.h"
 #include "sim/device_material.h"
 #include "sim/device_replica.h"

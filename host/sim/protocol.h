@@ -1,14 +1,15 @@
 // The experiment of one replica as a sequence of intervals: relax, then the moves and holds of its programme,
-// with scans. For a cell, the plate's position is the position along its strain path (scene/cell_path.h). The
-// protocol depends only on the results of its own replica, so a replica does the same alone and in any batch.
+// with scans. For a cell, the plate's position is the position along its strain path
+// (scene/programme/cell_path.h). The protocol depends only on the results of its own replica, so a replica
+// does the same alone and in any batch.
 #pragma once
 #include <optional>
 #include <string>
 #include <type_traits>
 
-#include "scene/cell_path.h"
-#include "scene/legs.h"
-#include "scene/scan_quantity.h"
+#include "scene/programme/cell_path.h"
+#include "scene/programme/legs.h"
+#include "scene/programme/scan_quantity.h"
 #include "sim/cell_control.h"
 #include "sim/engine.h"
 #include "sim/force_control.h"

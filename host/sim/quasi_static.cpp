@@ -6,7 +6,7 @@
 
 #include "core/constants.h"
 #include "core/container.h"
-#include "scene/true_grains.h"
+#include "scene/packing/true_grains.h"
 #include "sim/device_replica.h"
 
 namespace mcdem::inline sim {

@@ -10,8 +10,8 @@
 #include "core/container.h"
 #include "core/errors.h"
 #include "core/law_range.h"
-#include "scene/make_packing.h"
-#include "scene/true_grains.h"
+#include "scene/packing/make_packing.h"
+#include "scene/packing/true_grains.h"
 #include "sim/averages.h"
 #include "sim/batch_limits.h"
 

@@ -31,7 +31,7 @@ std::set<std::string> reached_from(const std::set<std::string>& roots) {
 }
 
 TEST(ChallengeBlindness, DiagnosingCodeDoesNotIncludeTheTruth) {
-    const auto reached = reached_from({"challenge/run.cpp", "ensemble/diagnose_experiment.cpp"});
+    const auto reached = reached_from({"challenge/run.cpp", "ensemble/diagnosis/diagnose_experiment.cpp"});
     EXPECT_TRUE(reached.contains("diagnose/infer/proposals.cpp")) << "the search itself must search";
     for (const char* sealed : {"challenge/truth.h", "challenge/case.h", "challenge/plan.h"})
         EXPECT_FALSE(reached.contains(sealed)) << sealed;
@@ -44,7 +44,7 @@ TEST(ChallengeBlindness, ScoringCodeIncludesTheTruth) {
 TEST(ChallengeBlindness, RunningCodeDoesNotMentionTheTruth) {
     for (const char* name :
          {"challenge/run.cpp", "challenge/run.h", "cli/challenge/challenge_run.cpp",
-          "ensemble/diagnose_experiment.cpp", "challenge/files.cpp", "challenge/results.cpp"})
+          "ensemble/diagnosis/diagnose_experiment.cpp", "challenge/files.cpp", "challenge/results.cpp"})
         EXPECT_EQ(bytes_of_file(host / name).find("truth"), std::string::npos) << name;
 }
 

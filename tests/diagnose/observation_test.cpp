@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "diagnose/synthetic_scan.h"
-#include "scene/programme_text.h"
+#include "scene/programme/programme_text.h"
 
 namespace mcdem {
 namespace {

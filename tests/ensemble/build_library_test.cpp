@@ -1,5 +1,5 @@
 // Libraries of tiny packings: their contents, and the runs from which they are made.
-#include "ensemble/build_library.h"
+#include "ensemble/diagnosis/build_library.h"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "ensemble/diagnose_experiment.h"
+#include "ensemble/diagnosis/diagnose_experiment.h"
 #include "ensemble/parts/library_parts.h"
 #include "ensemble/run_scene.h"
 #include "ensemble/small_trials.h"

@@ -1,12 +1,12 @@
 // A library is accepted only with the scene, instrument and program from which it was made.
-#include "ensemble/library_origin.h"
+#include "ensemble/diagnosis/library_origin.h"
 
 #include <gmock/gmock.h>
 
 #include "core/errors.h"
 #include "ensemble/small_trials.h"
 #include "metrics/estimate.h"
-#include "scene/keys.h"
+#include "scene/read/keys.h"
 
 namespace mcdem {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/errors.h"
 #include "ensemble/small_scene.h"
-#include "scene/make_packing.h"
+#include "scene/packing/make_packing.h"
 
 namespace mcdem {
 namespace {

@@ -1,5 +1,5 @@
 // Stored observations are found again; other, damaged and foreign files are not used.
-#include "ensemble/observation_store.h"
+#include "ensemble/diagnosis/observation_store.h"
 
 #include <gtest/gtest.h>
 

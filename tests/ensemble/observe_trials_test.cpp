@@ -1,6 +1,6 @@
 // Trials: the same results alone and in a batch, new and from the store; different trials have different
 // names.
-#include "ensemble/observe_trials.h"
+#include "ensemble/diagnosis/observe_trials.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "ensemble/small_trials.h"
-#include "scene/keys.h"
+#include "scene/read/keys.h"
 
 namespace mcdem {
 namespace {

@@ -1,9 +1,9 @@
 // Other protocols of the plate, by which a diagnosis could tell effects apart.
-#include "ensemble/other_protocols.h"
+#include "ensemble/diagnosis/other_protocols.h"
 
 #include <gtest/gtest.h>
 
-#include "ensemble/diagnose_experiment.h"
+#include "ensemble/diagnosis/diagnose_experiment.h"
 #include "ensemble/small_trials.h"
 
 namespace mcdem {

@@ -1,5 +1,5 @@
 // The paper's metrics before and after a gap is closed, for recordings with known forces.
-#include "ensemble/paper_metrics.h"
+#include "ensemble/diagnosis/paper_metrics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ensemble/plate_motion.h"
+#include "ensemble/diagnosis/plate_motion.h"
 
 #include <gmock/gmock.h>
 

@@ -5,7 +5,7 @@
 #include "ensemble/run_scene.h"
 #include "ensemble/small_scene.h"
 #include "io/results.h"
-#include "scene/legs.h"
+#include "scene/programme/legs.h"
 
 namespace mcdem {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/read_scene.h"
+#include "scene/read/read_scene.h"
 
 namespace mcdem {
 

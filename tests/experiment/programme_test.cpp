@@ -8,7 +8,7 @@
 #include "experiment/experiment_folder.h"
 #include "experiment/instrument.h"
 #include "experiment/measurements.h"
-#include "scene/programme_text.h"
+#include "scene/programme/programme_text.h"
 
 namespace mcdem::test {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "core/sha256.h"
 #include "diagnose/synthetic_evidence.h"
-#include "ensemble/observation_store.h"
+#include "ensemble/diagnosis/observation_store.h"
 #include "ensemble/parts/manifest.h"
 #include "fuzz/mutate_json.h"
 #include "fuzz/scratch_folder.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/errors.h"
-#include "scene/read_packing.h"
+#include "scene/packing/read_packing.h"
 
 namespace {
 

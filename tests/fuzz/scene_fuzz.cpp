@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "core/errors.h"
-#include "scene/read_scene.h"
+#include "scene/read/read_scene.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     try {

@@ -8,7 +8,7 @@
 
 #include "core/recording.h"
 #include "reference/grain_reference.h"
-#include "scene/true_grains.h"
+#include "scene/packing/true_grains.h"
 
 namespace reference {
 namespace {

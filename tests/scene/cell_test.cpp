@@ -2,9 +2,9 @@
 #include "core/container.h"
 #include "core/errors.h"
 #include "largest_overlap.h"
-#include "scene/cell_path.h"
-#include "scene/make_packing.h"
-#include "scene/read_scene.h"
+#include "scene/packing/make_packing.h"
+#include "scene/programme/cell_path.h"
+#include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

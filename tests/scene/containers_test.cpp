@@ -1,10 +1,10 @@
 // Cylinders and periodic containers: keys, errors, and packings that fill them.
 #include "core/container.h"
 #include "largest_overlap.h"
-#include "scene/generate_packing.h"
-#include "scene/make_packing.h"
-#include "scene/packing_state.h"
-#include "scene/read_scene.h"
+#include "scene/packing/generate_packing.h"
+#include "scene/packing/make_packing.h"
+#include "scene/packing/packing_state.h"
+#include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

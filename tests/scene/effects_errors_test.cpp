@@ -1,6 +1,6 @@
 // Impossible effects: amplitudes out of range, plates that would reach the floor, grains without volume.
-#include "scene/make_packing.h"
-#include "scene/read_scene.h"
+#include "scene/packing/make_packing.h"
+#include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

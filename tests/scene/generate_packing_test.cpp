@@ -1,5 +1,5 @@
 // Generated packings: sizes, positions, overlaps; the same bits for the same seed.
-#include "scene/generate_packing.h"
+#include "scene/packing/generate_packing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "largest_overlap.h"
-#include "scene/cell_pairs.h"
-#include "scene/make_packing.h"
-#include "scene/overlap_relaxation.h"
+#include "scene/packing/cell_pairs.h"
+#include "scene/packing/make_packing.h"
+#include "scene/packing/overlap_relaxation.h"
 #include "scene/random.h"
 #include "scene_test_tools.h"
 

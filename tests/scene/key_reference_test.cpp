@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "scene/list_tables.h"
-#include "scene/toml_text.h"
+#include "scene/read/list_tables.h"
+#include "scene/read/toml_text.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {
@@ -109,7 +109,8 @@ std::size_t count_keys(std::string_view table) {
         std::ranges::count_if(keys(), [&](const Key& key) { return key.name.starts_with(table); }));
 }
 
-/// Does not compile if a member is added to a struct: add a row to host/scene/keys.cpp, then a name here.
+/// Does not compile if a member is added to a struct: add a row to host/scene/read/keys.cpp, then a name
+/// here.
 TEST(Keys, CoverEveryMember) {
     [[maybe_unused]] const auto [b1, b2, b3, b4, t1, t2, t3] = Box{};  // tilts: of a deformed cell
     [[maybe_unused]] const auto [g1, g2, g3, g4, g5, g6, g7] = GrainMaterial{};

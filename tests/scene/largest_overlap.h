@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/container.h"
-#include "scene/cell_pairs.h"
+#include "scene/packing/cell_pairs.h"
 
 namespace mcdem {
 

@@ -1,9 +1,9 @@
 // Packings from dumps, from Yade's text format, and from one of several frames; errors are reported by line.
 #include <fstream>
 
-#include "scene/packing_state.h"
-#include "scene/read_packing.h"
-#include "scene/read_scene.h"
+#include "scene/packing/packing_state.h"
+#include "scene/packing/read_packing.h"
+#include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

@@ -1,9 +1,9 @@
 // Programmes in scenes: stages and their legs, overrides, variations, errors.
 #include <cmath>
 
-#include "scene/legs.h"
-#include "scene/programme_text.h"
-#include "scene/read_scene.h"
+#include "scene/programme/legs.h"
+#include "scene/programme/programme_text.h"
+#include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

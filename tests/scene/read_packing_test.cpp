@@ -1,11 +1,11 @@
 // Packings from files: the measured packing, both formats, and wrong files.
-#include "scene/read_packing.h"
+#include "scene/packing/read_packing.h"
 
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
-#include "scene/make_packing.h"
+#include "scene/packing/make_packing.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

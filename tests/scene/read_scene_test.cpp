@@ -1,7 +1,7 @@
 // Valid scenes: values, defaults, overrides, paths, and the text stored in results.
-#include "scene/read_scene.h"
+#include "scene/read/read_scene.h"
 
-#include "scene/keys.h"
+#include "scene/read/keys.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

@@ -1,7 +1,7 @@
 // Copies and variations of a replica.
 #include <set>
 
-#include "scene/read_scene.h"
+#include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

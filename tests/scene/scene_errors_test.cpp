@@ -1,6 +1,6 @@
 // Invalid scenes: all problems are reported at once, each with its position, the expected and the actual
 // value.
-#include "scene/read_scene.h"
+#include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/errors.h"
-#include "scene/read_scene.h"
+#include "scene/read/read_scene.h"
 
 namespace mcdem {
 

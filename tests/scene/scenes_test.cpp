@@ -1,6 +1,6 @@
 // Every scene of scenes/ is valid and agrees with its comments.
-#include "scene/make_packing.h"
-#include "scene/read_scene.h"
+#include "scene/packing/make_packing.h"
+#include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

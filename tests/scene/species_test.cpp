@@ -7,11 +7,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/legs.h"
-#include "scene/make_packing.h"
+#include "scene/packing/make_packing.h"
+#include "scene/packing/sizes.h"
+#include "scene/programme/legs.h"
 #include "scene/random.h"
-#include "scene/read_scene.h"
-#include "scene/sizes.h"
+#include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

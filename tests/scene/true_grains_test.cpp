@@ -1,5 +1,5 @@
 // True diameters: the stated ones with a common error and an individual error.
-#include "scene/true_grains.h"
+#include "scene/packing/true_grains.h"
 
 #include <numeric>
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "reference/test_scene.h"
-#include "scene/make_packing.h"
-#include "scene/read_packing.h"
+#include "scene/packing/make_packing.h"
+#include "scene/packing/read_packing.h"
 #include "sim/simulation.h"
 
 namespace reference {

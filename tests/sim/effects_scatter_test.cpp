@@ -2,7 +2,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "scene/true_grains.h"
+#include "scene/packing/true_grains.h"
 #include "sim/simulation.h"
 #include "sim/squeezed_grain.h"
 

@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "reference/test_scene.h"
-#include "scene/make_packing.h"
-#include "scene/read_scene.h"
+#include "scene/packing/make_packing.h"
+#include "scene/read/read_scene.h"
 #include "sim/simulation.h"
 
 namespace reference {

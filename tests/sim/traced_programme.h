@@ -2,8 +2,8 @@
 // the strain and stress of a cell.
 #pragma once
 #include "reference/test_scene.h"
-#include "scene/make_packing.h"
-#include "scene/read_scene.h"
+#include "scene/packing/make_packing.h"
+#include "scene/read/read_scene.h"
 #include "sim/compliant_plate.h"
 #include "sim/simulation.h"
 

@@ -17,8 +17,8 @@
 #include "experiment/instrument.h"
 #include "io/results.h"
 #include "metrics/programmes.h"
-#include "scene/packing_fields.h"
-#include "scene/programme_text.h"
+#include "scene/packing/packing_fields.h"
+#include "scene/programme/programme_text.h"
 
 namespace mcdem::inline cli {
 namespace {

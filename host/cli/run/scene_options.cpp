@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/read_scene.h"
+#include "scene/read/read_scene.h"
 
 namespace mcdem::inline cli {
 

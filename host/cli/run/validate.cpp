@@ -7,9 +7,9 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
 #include "core/errors.h"
-#include "scene/legs.h"
-#include "scene/packing_state.h"
-#include "scene/read_packing.h"
+#include "scene/packing/packing_state.h"
+#include "scene/packing/read_packing.h"
+#include "scene/programme/legs.h"
 #include "sim/batch_limits.h"
 
 namespace mcdem::inline cli {

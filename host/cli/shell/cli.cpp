@@ -13,7 +13,7 @@
 #include "cli/shell/standard_streams.h"
 #include "core/version.h"
 #include "io/results.h"
-#include "scene/read_packing.h"
+#include "scene/packing/read_packing.h"
 
 namespace mcdem::inline cli {
 namespace {

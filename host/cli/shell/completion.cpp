@@ -6,7 +6,7 @@
 
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
-#include "scene/keys.h"
+#include "scene/read/keys.h"
 
 namespace mcdem::inline cli {
 namespace {

@@ -19,7 +19,7 @@ struct Library {
     std::vector<Signature> nuisances;
     std::map<std::string, std::string> provenance;  ///< scene, program, device
     std::map<std::string, std::string>
-        origin;  ///< everything that it depends on, by name (ensemble/library_origin.h)
+        origin;  ///< everything that it depends on, by name (ensemble/diagnosis/library_origin.h)
 };
 
 /// Groups of replicates with a common mean: those of a packing, or all of them if every packing has only one.

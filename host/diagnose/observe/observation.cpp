@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "metrics/estimate.h"
-#include "scene/programme_text.h"
+#include "scene/programme/programme_text.h"
 
 namespace mcdem::inline diagnose {
 namespace {

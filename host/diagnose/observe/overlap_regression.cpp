@@ -8,7 +8,7 @@
 #include "core/container.h"
 #include "core/least_squares.h"
 #include "metrics/estimate.h"
-#include "scene/cell_pairs.h"
+#include "scene/packing/cell_pairs.h"
 
 namespace mcdem::inline diagnose {
 namespace {

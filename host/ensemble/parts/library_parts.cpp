@@ -8,7 +8,7 @@
 #include "diagnose/observe/needed_to_diagnose.h"
 #include "ensemble/parts/manifest.h"
 #include "io/folder_lock.h"
-#include "scene/programme_text.h"
+#include "scene/programme/programme_text.h"
 
 namespace mcdem::inline ensemble {
 namespace {

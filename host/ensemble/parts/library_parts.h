@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "ensemble/diagnose_experiment.h"
+#include "ensemble/diagnosis/diagnose_experiment.h"
 #include "ensemble/parts/parted_work.h"
 
 namespace mcdem::inline ensemble {

@@ -2,7 +2,7 @@
 // results.
 #include <mcdem/ensemble/run_scene.h>
 #include <mcdem/io/results.h>
-#include <mcdem/scene/read_scene.h>
+#include <mcdem/scene/read/read_scene.h>
 
 #include <cstdio>
 
