@@ -1,6 +1,7 @@
 #include "cl/device.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,7 +10,6 @@
 
 #include "cl/held_signals.h"
 #include "cl/kernel_cache.h"
-#include "cl/process_limits.h"
 #include "cl/profile.h"
 
 namespace mcdem::inline opencl {
@@ -46,9 +46,24 @@ void expect_not_forked() {
     static const pid_t first = getpid();
     if (getpid() != first)
         throw RunError(
-            "OpenCL was used before this process was forked, and does not work in the child: begin the child "
-            "afresh "
+            "OpenCL was used before this process was forked, and does not work in the child: start a new "
+            "process "
             "(in Python, multiprocessing.get_context(\"spawn\"))");
+}
+
+/// Drivers crash where they cannot open files. Raises the limit to the maximum that the system allows.
+void expect_enough_open_files() {
+    constexpr rlim_t enough = 64, plenty = 1024;
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= plenty) return;
+    rlimit raised = limit;
+    raised.rlim_cur = limit.rlim_max < plenty ? limit.rlim_max : plenty;
+    if (::setrlimit(RLIMIT_NOFILE, &raised) == 0) limit = raised;
+    if (limit.rlim_cur < enough)
+        throw RunError(
+            fmt::format("the limit of open files is {}, too few for the OpenCL driver: raise it "
+                        "(`ulimit -n`) to {} or more",
+                        limit.rlim_cur, enough));
 }
 
 std::vector<Found> find_devices() {

@@ -1,9 +1,12 @@
 // Kernel arguments have quantity types: calls with swapped or missing fields do not compile.
 #include "sim/fields.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <type_traits>
+
+#include "reference/test_scene.h"
 
 namespace mcdem {
 namespace {
@@ -27,6 +30,14 @@ static_assert(assignable<CellHead, CellHead> && !assignable<CellHead, CellNext>,
               "fields of one form and another quantity do not mix");
 
 TEST(TypedArguments, AreCheckedWhenThisFileIsCompiled) {}
+
+TEST(TypedArguments, AreCountedWhenAKernelIsMade) {
+    const KernelBuild build = reference::build(Precision::single_precision);
+    const cl::Program program = build_program(reference::device(), build);
+    using TooFew = Kernel<Field<Constants>, Field<Portions>>;
+    EXPECT_THAT([&] { TooFew(reference::device(), program, "empty_cells", build.list_items()); },
+                testing::ThrowsMessage<RunError>(testing::HasSubstr("takes 3 arguments, the host has 2")));
+}
 
 }  // namespace
 }  // namespace mcdem
