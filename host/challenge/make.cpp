@@ -71,7 +71,7 @@ public:
         for (const ChallengeCase& c : challenge_.cases)
             if (!is_sealed_ || !is_complete(options_.folder / c.folder)) missing.push_back(&c);
         if (!missing.empty()) simulator_.make_packings(challenge_.packing_seeds, options_.stop_wanted);
-        if (!is_sealed_) weaken_what_runs_away();
+        if (!is_sealed_) weaken_diverging();
         const std::string seal = seal_all();
         const std::size_t before = challenge_.cases.size() - missing.size();
         in_batches(missing, [&](const Cases& batch, std::size_t first) {
@@ -113,7 +113,7 @@ private:
 
     /// Dense packings with interacting contacts have no static solution above some amplitude. Such cases
     /// are loaded again with weaker effects before the truth is sealed.
-    void weaken_what_runs_away() {
+    void weaken_diverging() {
         Cases tried;
         for (const ChallengeCase& c : challenge_.cases)
             if (!c.effects.empty()) tried.push_back(&c);

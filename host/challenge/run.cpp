@@ -54,7 +54,7 @@ public:
                                          (options.challenge / "challenge.json").string()));
         for (const OpenCase& c : challenge_.cases)
             if (!fs::exists(options.challenge / c.folder / "experiment.toml"))
-                throw InputError(fmt::format("{}: {} is not made yet: go on with `mcdem challenge make`",
+                throw InputError(fmt::format("{}: {} is not made yet: continue with `mcdem challenge make`",
                                              options.challenge.string(), c.folder));
         lock_.emplace(lock_folder(options.out, use));
         expect_own_options();

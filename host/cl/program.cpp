@@ -83,8 +83,10 @@ cl::Program build_program(const Device& device, const KernelBuild& build) {
         const HeldSignals held;
         program.build({device.handle()}, options.c_str());
     } catch (const cl::Error&) {
-        throw RunError(fmt::format("the kernels do not compile on {} with {}:\n{}", device.info().name,
-                                   options, program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle())));
+        throw RunError(fmt::format(
+            "the kernels do not compile on {} with {}, or the compiler cannot write its "
+            "files (full disk, `ulimit -f`):\n{}",
+            device.info().name, options, program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle())));
     }
     return program;
 }

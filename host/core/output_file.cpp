@@ -47,9 +47,8 @@ bool is_of_kind(std::string_view head, FileKind kind) {
 }
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& problem) {
-    throw InputError(
-        fmt::format("{}: {}, and is not replaced: give another place (--out), or remove it first",
-                    file.string(), problem));
+    throw InputError(fmt::format("{}: {}; it is not replaced: give another path (--out), or remove it first",
+                                 file.string(), problem));
 }
 
 }  // namespace
@@ -58,11 +57,11 @@ void expect_replaceable(const fs::path& file, FileKind kind) {
     std::error_code error;
     const auto status = fs::symlink_status(file, error);
     if (status.type() == fs::file_type::not_found) return;
-    if (!fs::is_regular_file(file, error)) refuse(file, "is there, but is no file");
+    if (!fs::is_regular_file(file, error)) refuse(file, "exists and is not a regular file");
     std::ifstream in(file, std::ios::binary);
     std::string head(static_cast<std::size_t>(kind == FileKind::figure ? largest_figure : head_size), '\0');
     in.read(head.data(), static_cast<std::streamsize>(head.size()));
-    if (!in.is_open() || in.bad()) refuse(file, "is there and cannot be read");
+    if (!in.is_open() || in.bad()) refuse(file, "cannot be read");
     head.resize(static_cast<std::size_t>(in.gcount()));
     if (!head.empty() && !is_of_kind(head, kind)) refuse(file, fmt::format("is not {}", mark_of(kind).what));
 }
@@ -71,12 +70,6 @@ void replace_own(const fs::path& file, FileKind kind, std::string_view text) {
     expect_replaceable(file, kind);
     remove_temporaries_of(file);
     replace_file(file, text);
-}
-
-void replace_own(const fs::path& file, FileKind kind, const std::function<void(NewFile& out)>& write) {
-    expect_replaceable(file, kind);
-    remove_temporaries_of(file);
-    replace_file(file, write);
 }
 
 void expect_no_answers(const fs::path& folder) {

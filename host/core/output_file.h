@@ -4,12 +4,9 @@
 // so inputs are safe as well.
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <string_view>
 
 namespace mcdem::inline core {
-
-class NewFile;
 
 /// Files that a command writes again when it is run again.
 enum class FileKind {
@@ -32,8 +29,6 @@ void expect_replaceable(const std::filesystem::path& file, FileKind kind);
 
 /// replace_file, after expect_replaceable.
 void replace_own(const std::filesystem::path& file, FileKind kind, std::string_view text);
-void replace_own(const std::filesystem::path& file, FileKind kind,
-                 const std::function<void(NewFile& out)>& write);
 
 /// A folder with the diagnoses of a challenge contains this subfolder.
 inline constexpr const char* answers_folder = "evidence";

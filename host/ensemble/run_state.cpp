@@ -146,7 +146,7 @@ std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunI
                         where, checkpoint->segments, folder.segments()));
     if (program != identity.program)
         on_warning(
-            fmt::format("{}: was begun by {}, goes on with {}: results may differ from those of an "
+            fmt::format("{}: was begun by {}, is continued by {}: results may differ from those of an "
                         "uninterrupted run",
                         where, program, identity.program));
     return checkpoint;

@@ -9,7 +9,6 @@
 #include "core/errors.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
-#include "io/checkpoint.h"
 #include "io/result_file.h"
 
 namespace mcdem::inline io {
@@ -88,12 +87,8 @@ std::vector<fs::path> result_files(const fs::path& file_or_folder) {
         throw InputError(
             file_or_folder.string() +
             ": holds parts of a run that are not merged yet: wait for the programs that compute them, or "
-            "go on with --resume (in Python resume=True)");
+            "continue with --resume (in Python resume=True)");
     const auto segments = segment_files(file_or_folder);
-    if (segments.empty() && has_checkpoint(file_or_folder))
-        throw InputError(file_or_folder.string() +
-                         ": holds a run that was stopped before it wrote results: go on with --resume (in "
-                         "Python resume=True)");
     if (segments.empty())
         throw InputError(file_or_folder.string() + ": holds no run (neither run.h5 nor segment-000000.h5)");
     return segments;
@@ -130,7 +125,7 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
     if (fs::exists(parts_folder(folder)))
         throw InputError(
             folder.string() +
-            ": holds parts of a run: go on with `mcdem run .. --resume`, or give another folder");
+            ": holds parts of a run: continue with `mcdem run .. --resume`, or give another folder");
     if (found.is_finished()) {
         found.remove_segments();  // left by a finish() that was interrupted after its last write
     } else {

@@ -88,8 +88,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
       device_replicas_(any_device_replicas(build_, replicas_, packings, layout_)),
       fields_(device,
               field_extents(build_, replicas_, sizes_of(packings),
-                            std::visit([](const auto& all) { return total_cells(all); }, device_replicas_)),
-              layout_),
+                            std::visit([](const auto& all) { return total_cells(all); }, device_replicas_))),
       kernels_(device, build_) {
     for (int r = 0; r < layout_.replicas(); ++r) {
         time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));

@@ -13,6 +13,7 @@
 #include "scene/scene.h"
 #include "sim/device_types.h"
 #include "sim/fields.h"
+#include "sim/layout.h"
 
 namespace mcdem::inline sim {
 

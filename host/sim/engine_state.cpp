@@ -43,7 +43,7 @@ int number_at(const std::byte* bytes, std::size_t index) {
 }
 
 [[noreturn]] void refuse(const char* name, std::size_t slot, int number) {
-    refuse_checkpoint(fmt::format("slot {} of '{}' holds {}, which there is not", slot, name, number));
+    refuse_checkpoint(fmt::format("slot {} of '{}' holds the invalid number {}", slot, name, number));
 }
 
 /// Checks partners and partner slots, because kernels use them as indices without checks.

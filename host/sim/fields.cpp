@@ -65,7 +65,7 @@ FieldMemory Fields::memory_of(const FieldExtents& extents) {
     return memory;
 }
 
-Fields::Fields(Device& device, const FieldExtents& extents, const Layout& layout) {
+Fields::Fields(Device& device, const FieldExtents& extents) {
     visit_extents(extents, [&](auto& field, std::uint64_t count, std::size_t size) {
         field = std::remove_reference_t<decltype(field)>(device, count, size);
         memory_.all += field.bytes();

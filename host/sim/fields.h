@@ -6,7 +6,6 @@
 
 #include "cl/kernel.h"
 #include "cl/program.h"
-#include "sim/layout.h"
 
 namespace mcdem::inline sim {
 
@@ -83,7 +82,7 @@ struct FieldMemory {
 
 /// Fields have one element per grain (padded, all replicas) unless a comment says otherwise.
 struct Fields {
-    Fields(Device& device, const FieldExtents& extents, const Layout& layout);
+    Fields(Device& device, const FieldExtents& extents);
 
     /// Memory of fields with these extents, computed without a device.
     static FieldMemory memory_of(const FieldExtents& extents);

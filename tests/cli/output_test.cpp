@@ -82,12 +82,12 @@ TEST_F(OutputTest, AReportReplacesOnlyPages) {
     for (const std::string out :
          {"a/run.h5", "./a/../a/run.h5", "hard.html", "small.toml", "own.html", "link.html", "a"})
         expect_bad_input(mcdem({"report", "a", "--out", out}),
-                         "and is not replaced: give another place (--out)");
+                         "it is not replaced: give another path (--out)");
     EXPECT_TRUE(text("a/run.h5") == run);
     EXPECT_EQ(text("small.toml"), small_scene_text);
     EXPECT_THAT(text("own.html"), HasSubstr("mine"));
     ASSERT_EQ(::mkfifo(path("fifo").c_str(), 0600), 0);
-    expect_bad_input(mcdem({"report", "a", "--out", "fifo"}), "fifo: is there, but is no file");
+    expect_bad_input(mcdem({"report", "a", "--out", "fifo"}), "fifo: exists and is not a regular file");
     write("empty.html", "");
     for (const char* out : {"empty.html", "empty.html", "new/page.html", "new/page.html"})
         expect_done(mcdem({"report", "a", "--out", out}));

@@ -101,6 +101,27 @@ TEST_F(SharingTest, MissingSlurmIsBadInput) {
     expect_bad_input(finished, "the program sbatch is not there");
 }
 
+TEST_F(SharingTest, NothingIsSubmittedAgainWhileSlurmDoesNotAnswer) {
+    fs::create_directories(path("bin"));
+    const auto program = [&](const std::string& name, const std::string& script) {
+        std::ofstream(path("bin/" + name)) << "#!/bin/sh\n" << script;
+        fs::permissions(path("bin/" + name), fs::perms::owner_all);
+    };
+    program("sbatch", "echo job >> " + path("submitted").string() + "\necho 7\n");
+    program("squeue", "exit 1\n");
+    const std::string search = "PATH=" + path("bin").string() + ":/usr/bin:/bin";
+    expect_done(mcdem(run_words("out", {"--slurm", "--no-wait"}), {search}));
+    EXPECT_EQ(bytes_of_file(path("submitted")), "job\njob\n");
+    const auto again = mcdem(run_words("out", {"--slurm", "--no-wait"}), {search});
+    EXPECT_EQ(again.exit_code, 1);
+    EXPECT_THAT(again.err, HasSubstr("squeue does not answer"));
+    EXPECT_EQ(bytes_of_file(path("submitted")), "job\njob\n");
+    program("sbatch", "echo your job 8 was submitted\n");
+    program("squeue", "exit 0\n");
+    expect_bad_input(mcdem(run_words("out", {"--slurm", "--no-wait"}), {search}),
+                     "sbatch has refused the job");
+}
+
 TEST_F(SharingTest, ConflictingOptionsAreRefused) {
     for (const std::vector<std::string>& words : {std::vector<std::string>{"--mpi", "--slurm"},
                                                   {"--part", "1", "--mpi"},

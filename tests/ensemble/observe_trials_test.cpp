@@ -262,7 +262,7 @@ TEST(TrialNames, DifferForInstruments) {
                     [&](std::size_t k) { EXPECT_FALSE(names.taken_for_the_kept(trial)) << k; });
 }
 
-TEST(TrialNames, DifferForQuestions) {
+TEST(TrialNames, DifferForSettings) {
     Names names;
     TrialSettings common = names.small.common;
     const auto expect_apart = [&](const char* what) {

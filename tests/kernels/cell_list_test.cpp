@@ -39,7 +39,7 @@ struct CellScene {
         extents.grains = layout.grains();
         extents.cells = cell_head.size();
         extents.slots = kernels.slots;
-        mcdem::Fields fields(device(), extents, layout);
+        mcdem::Fields fields(device(), extents);
         mcdem::Kernels program(device(), kernels);
         fields.replicas.write(replicas.data());
         fields.motion.copies[0].write(motion.data());

@@ -80,7 +80,7 @@ def gives_up_a_part_that_kills_its_processes(place):
                 file.unlink(missing_ok=True)
         time.sleep(0.01)
     said = finish(process, exit_codes=(1,))
-    assert len(killed) == 2 and "no part could be finished" in said, (killed, said)
+    assert len(killed) == 3 and "no part could be finished" in said, (killed, said)
     assert len(list((place.path / "both/parts").glob("*.h5"))) == 3
     place.run([place.mcdem, *command_of("sweep.toml", "both"), "--resume"])
     place.expect_like_alone("both")

@@ -127,7 +127,8 @@ void warn_of_start(const Recording& truth) {
             1e3 * truth.displacement(first));
 }
 
-/// In a folder of its own first, which is renamed, so that a killed call leaves no part of an experiment.
+/// In a folder of its own first. If `out` does not exist, this folder is renamed, so that a killed call
+/// leaves no part of an experiment.
 void write_files(const FromRunCommand& command, const Experiment& experiment) {
     auto files = experiment_files(experiment, command.gzip ? Packed::gzip : Packed::plain);
     files[sums_file] = sums_text(files);

@@ -26,6 +26,8 @@ using Numbers = std::vector<std::size_t>;
 
 const char* const all_devices = "all";
 const char* const group = "Many devices and nodes";
+constexpr int max_tries =
+    3;  ///< passes in which no part is finished, for example because processes are killed
 constexpr int all_is_merged = -1;  ///< instead of an exit code: everything is merged and must be reported
 
 std::string choice_of(const std::string& device) { return device == all_devices ? "" : device; }
@@ -51,16 +53,17 @@ Numbers left_to_compute(PartedWork& parts) {
     return left;
 }
 
-void expect_progress(const SharedWork& work, const Numbers& before, const Numbers& left) {
-    if (left == before)
-        throw RunError(work.out.string() + ": no part could be finished: fix the errors above first");
+[[noreturn]] void refuse_to_repeat(const SharedWork& work) {
+    throw RunError(work.out.string() + ": no part could be finished: fix the errors above first");
 }
 
 /// Calls `compute`, which returns an exit code, with the missing parts until all are merged.
 int until_merged(const SharedWork& work, PartedWork& parts,
                  const std::function<int(const Numbers&)>& compute) {
+    int tries = 0;
     for (Numbers before, left; !(left = left_to_compute(parts)).empty(); before = left) {
-        expect_progress(work, before, left);
+        tries = left == before ? tries + 1 : 0;
+        if (tries == max_tries) refuse_to_repeat(work);
         if (const int code = compute(left); code != exit_done) return code;
     }
     return all_is_merged;
@@ -211,7 +214,7 @@ int compute_as_rank(const SharedWork& work, const std::string& device) {
             return ranks.agreed(ranks.rank() == 0 ? left_to_compute(*parts) : Numbers{});
         };
         for (Numbers before, left; !(left = left_now()).empty(); before = left) {
-            expect_progress(work, before, left);
+            if (left == before) refuse_to_repeat(work);
             for (std::size_t next; (next = ranks.next()) < left.size();) {
                 spdlog::info("part {}: rank {}, device {}", left[next], ranks.rank(), mine.info().index);
                 parts->compute(mine, left[next]);

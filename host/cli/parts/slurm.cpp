@@ -27,6 +27,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto look = std::chrono::milliseconds(200);  ///< interval between checks of the folder
 constexpr auto ask = std::chrono::seconds(5);          ///< interval between queries of Slurm
+constexpr int max_queries = 4;                         ///< of a query that must be answered
+constexpr auto pause = std::chrono::seconds(2);        ///< between these
 constexpr auto settle = std::chrono::seconds(10);      ///< time until files of a finished job become visible
 
 /// Maximum size of an array: Slurm's default of MaxArraySize.
@@ -35,7 +37,7 @@ constexpr std::size_t max_tasks = 1000;
 /// Set in the dependent job: number of the array, and its parts.
 std::string array_before() {
     const char* const value = std::getenv("MCDEM_SLURM_BEFORE");
-    return value ? value : "";
+    return value && std::getenv("SLURM_JOB_ID") && std::getenv("SLURM_JOB_NAME") ? value : "";
 }
 
 /// All jobs of a folder have the same name. On a node of the cluster the folder may have another path.
@@ -73,6 +75,15 @@ std::optional<std::string> queued(const SlurmJob& job) {
     return "";
 }
 
+/// The same; waits for an answer. Without one, the same parts could be submitted twice.
+std::string surely_queued(const SlurmJob& job) {
+    for (int tries = 0; tries < max_queries; ++tries) {
+        if (tries > 0) std::this_thread::sleep_for(pause);
+        if (const auto number = queued(job)) return *number;
+    }
+    throw RunError("squeue does not answer, see what it says above: give the command again later");
+}
+
 bool was_cancelled(const std::string& array) {
     const auto end = slurm({"squeue", "--jobs=" + array, "--noheader", "--states=CANCELLED", "--format=%F"});
     return end.exit_code == 0 && !end.out.empty();
@@ -89,11 +100,12 @@ std::string submit_script(const SlurmJob& job, const std::vector<std::string>& o
     words.push_back((job.folder / "job.sh").string());
     words.insert(words.end(), arguments.begin(), arguments.end());
     const auto end = slurm(words);
-    if (end.exit_code != 0)
+    const std::string number = end.out.substr(0, end.out.find_first_of(";\n"));
+    if (end.exit_code != 0 || number.empty() || number.find_first_not_of("0123456789") != number.npos)
         throw InputError(
             fmt::format("--slurm: sbatch has refused the job (exit code {}): see what it says above, and {}",
                         end.exit_code, (job.folder / "job.sh").string()));
-    return end.out.substr(0, end.out.find_first_of(";\n"));
+    return number;
 }
 
 }  // namespace
@@ -106,6 +118,7 @@ std::string job_script(const SlurmJob& job, const std::vector<std::size_t>& part
         "{}\n"
         "parts=({})\n"
         "if [[ $1 == part ]]; then\n"
+        "    unset MCDEM_SLURM_BEFORE\n"
         "    exec {} --part \"${{parts[SLURM_ARRAY_TASK_ID]}}\"\n"
         "fi\n"
         "export MCDEM_SLURM_BEFORE=\"$2 ${{parts[*]}}\"\n"
@@ -122,9 +135,9 @@ std::string submit(const SlurmJob& job, const std::vector<std::size_t>& all_part
         all_parts.begin() + static_cast<std::ptrdiff_t>(std::min(max_tasks, all_parts.size())));
     const fs::path script = job.folder / "job.sh";
     expect_replaceable(script, FileKind::job_script);
-    if (const auto there = fs::exists(script) ? queued(job) : ""; there && !there->empty()) {
-        spdlog::info("job {} of this work is still there", *there);
-        return *there;
+    if (const auto there = fs::exists(script) ? surely_queued(job) : ""; !there.empty()) {
+        spdlog::info("job {} of this work is still pending or running", there);
+        return there;
     }
     if (is_next_job()) {
         const std::string before = array_before(), last = before.substr(0, before.find(' '));

@@ -55,7 +55,9 @@ int run_export(const ExportCommand& command) {
     if (!command.vtk && !command.xyz) throw InputError("export: choose a format: vtk, xyz or both");
     const auto files = checked_files(command);
     const FolderLock lock = open_output_folder(command.out);
-    for (const auto& entry : fs::directory_iterator(command.out)) remove_temporaries(entry.path());
+    for (const auto& entry : fs::directory_iterator(command.out))  // of earlier exports
+        if (!entry.is_symlink() && entry.path().filename().string().starts_with("replica_"))
+            remove_temporaries(entry.path());
     std::vector<std::string> words;
     if (command.vtk) words.push_back("--vtk");
     if (command.xyz) words.push_back("--xyz");
@@ -84,7 +86,9 @@ void add_export(CLI::App& app, int& exit_code) {
         ->type_name("N");
     sub->add_option("--out", command->out, "Folder for the exported files")->required()->type_name("DIR");
     sub->footer(
-        "Needs positions and contacts in the run (output.positions, output.contacts: both on by default).\n"
+        "Needs positions and contacts in the run (output.positions, output.contacts: both on by default), "
+        "and "
+        "the Python package h5py.\n"
         "Examples:\n"
         "  mcdem export out/small --vtk --out out/paraview\n"
         "  mcdem export out/small --vtk --replica 1 --scan 6 7 --out out/some\n"

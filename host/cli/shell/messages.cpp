@@ -41,8 +41,9 @@ const char* remedy_of(cl_int code) {
             return "the device has not enough memory (run fewer replicas at a time), or it has failed "
                    "(`mcdem devices` lists those that answer)";
         default:
-            return "the device or its driver has failed (`mcdem devices` lists those that answer), or its "
-                   "compiled kernels are damaged (remove the folder POCL_CACHE_DIR, or ~/.cache/pocl/kcache)";
+            return "the device or its driver has failed (`mcdem devices` lists those that answer), or, with "
+                   "PoCL, its compiled kernels are damaged (remove the folder that POCL_CACHE_DIR names, or "
+                   "~/.cache/pocl/kcache)";
     }
 }
 

@@ -29,6 +29,8 @@ std::string variable(const char* name) {
 
 std::string interpreter() {
     const std::string chosen = variable("MCDEM_PYTHON");
+    if (chosen.find('=') != chosen.npos)
+        throw InputError(fmt::format("MCDEM_PYTHON: must be a path without =, got {}", chosen));
     if (!chosen.empty()) return chosen;
     // In a virtual environment the interpreter next to this program, otherwise the system's.
     for (const fs::path& python : {this_program().parent_path() / "python3", fs::path("/usr/bin/python3")})

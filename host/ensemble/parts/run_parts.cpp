@@ -74,10 +74,9 @@ std::size_t size_in(const Manifest& kept, const fs::path& file) {
 void expect_no_run_of_one(const fs::path& folder) {
     if (fs::exists(parts_folder(folder))) return;
     if (has_checkpoint(folder) || !segment_files(folder).empty())
-        throw InputError(
-            folder.string() +
-            ": holds an interrupted run of one program: go on with it by --resume alone, or give "
-            "another folder");
+        throw InputError(folder.string() +
+                         ": holds an interrupted run of one program: continue it by --resume alone, or give "
+                         "another folder");
 }
 
 /// Excludes processes that work alone, and then checks the content of the folder.

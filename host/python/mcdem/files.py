@@ -23,6 +23,8 @@ def new_file(file):
             os.fsync(out.fileno())
         os.replace(temporary, file)
     except OSError as error:
+        if error.errno is None or error.filename not in (None, str(temporary)):
+            raise  # of another file
         raise OSError(error.errno, error.strerror, str(file)) from error
     finally:
         temporary.unlink(missing_ok=True)
@@ -43,6 +45,6 @@ def expect_replaceable(file, what, begins, holds=b""):
         if head and not (head.startswith(begins) and holds in head):
             problem = f"is not {what}"
     elif os.path.lexists(file):
-        problem = "is there, but is no file"
+        problem = "exists and is not a regular file"
     if problem:
-        raise InputError(f"{file}: {problem}, and is not replaced: give another place (--out), or remove it first")
+        raise InputError(f"{file}: {problem}; it is not replaced: give another path (--out), or remove it first")

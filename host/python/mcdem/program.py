@@ -41,8 +41,8 @@ def exit_code_of(error):
         say(error)
     elif isinstance(error, MemoryError):
         say("not enough memory")
-    elif isinstance(error, OSError) and error.strerror:
-        say(f"{error.filename}: {error.strerror}" if error.filename else error.strerror)
+    elif isinstance(error, OSError):
+        say(f"{error.filename}: {error.strerror}" if error.filename else error.strerror or error)
     else:
         raise error
     return 1

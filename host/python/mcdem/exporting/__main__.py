@@ -1,7 +1,9 @@
 """What `mcdem export` starts (host/cli/run/export.cpp), which has checked the run and locked the folder."""
 import argparse
+import os
 import pathlib
 
+from ..errors import InputError
 from . import export, vtk, xyz
 
 
@@ -14,7 +16,12 @@ def main():
     parser.add_argument("out")
     parser.add_argument("files", nargs="+")
     to = parser.parse_args()
-    count = export(to.files, pathlib.Path(to.out), to.formats, to.replica, to.scan)
+    try:
+        count = export(to.files, pathlib.Path(to.out), to.formats, to.replica, to.scan)
+    except FileNotFoundError:
+        if all(map(os.path.exists, to.files)):
+            raise
+        raise InputError(f"{os.path.dirname(to.files[0])}: the run has ended meanwhile: repeat the command") from None
     print(f"{count} files in {to.out}; how to view them: {', '.join(f'{to.out}/{form.GUIDE_NAME}' for form in to.formats)}")
 
 
