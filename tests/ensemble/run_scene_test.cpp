@@ -178,7 +178,8 @@ TEST_F(RunSceneTest, WarnsIfAnotherProgramVersionResumes) {
     run(small_scene(), "a", Start::fresh, 10);
     program_ = "newer";
     run(small_scene(), "a", Start::resume);
-    EXPECT_THAT(warnings_, testing::ElementsAre(testing::HasSubstr("was begun by test, is continued by newer")));
+    EXPECT_THAT(warnings_,
+                testing::ElementsAre(testing::HasSubstr("was begun by test, is continued by newer")));
 }
 
 TEST_F(RunSceneTest, FailedReplicaIsRecordedAndTheOtherContinues) {
