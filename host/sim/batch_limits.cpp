@@ -12,6 +12,7 @@
 #include "scene/programme/legs.h"
 #include "sim/device_material.h"
 #include "sim/device_replica.h"
+#include "sim/layout.h"
 
 namespace mcdem::inline sim {
 namespace {

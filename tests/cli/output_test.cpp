@@ -65,7 +65,7 @@ TEST_F(OutputTest, ARunDoesNotReplaceTables) {
         for (const std::vector<std::string>& how :
              {std::vector<std::string>{}, {"--part=0"}, {"--device=all"}})
             expect_bad_input(mcdem(run_words("tables", how)),
-                             "plate.csv: is not the table of a run, and is not replaced");
+                             "plate.csv: is not the table of a run; it is not replaced");
         EXPECT_EQ(text("tables/plate.csv"), table);
     }
     expect_done(mcdem(run_words("a")));
@@ -110,7 +110,7 @@ TEST_F(OutputTest, FilesOfOthersAreKept) {
     expect_done(mcdem(run_words("a")));
     const auto expect_kept = [&](const std::string& file, const std::vector<std::string>& words) {
         write(file, "of mine\n");
-        expect_bad_input(mcdem(words), "and is not replaced");
+        expect_bad_input(mcdem(words), "it is not replaced");
         EXPECT_EQ(text(file), "of mine\n");
     };
     expect_kept("1/README.txt", {"export", "a", "--vtk", "--out", "1"});
@@ -133,7 +133,7 @@ TEST_F(OutputTest, ADiagnosisReplacesOnlyItsOwnFiles) {
         write(file, "of mine\n");
         expect_bad_input(
             mcdem({"diagnose", "small.toml", "--experiment", "lab", "--out", path(file).parent_path()}),
-            "and is not replaced");
+            "it is not replaced");
         EXPECT_EQ(text(file), "of mine\n");
     };
     for (const char* name :

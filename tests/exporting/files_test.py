@@ -79,7 +79,7 @@ class Writing(case.Case):
                            (case.xyz, f"{FIRST}.xyz"), (case.xyz, f"{FIRST}.contacts.dump")):
             (self.view / name).parent.mkdir(exist_ok=True)
             (self.view / name).write_text("of mine")
-            with self.assertRaisesRegex(ValueError, f"{name}: is not .* and is not replaced"):
+            with self.assertRaisesRegex(ValueError, f"{name}: is not .* it is not replaced"):
                 self.export(make_run(), form)
             self.assertEqual((self.view / name).read_text(), "of mine")
             (self.view / name).write_text("")
