@@ -1,6 +1,7 @@
 """Guesses the meaning of tables. A guess is sure if a name states it and the numbers do not contradict, or if the numbers allow
 only one possibility; it is unclear if they allow several."""
 import re
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from .guess_names import guess_by_names, note_units
 from .guess_plate import guess_plate_units
 from .guess_values import guess_contacts_by_values, guess_grains_by_values, guess_plate_by_values
 from .mapping import UNCLEAR, Guess, MappedTable, columns_of, find_key, unused_columns, must_be_stated, signed_column
-from .names import VOXEL
 from .plate import import_plate
 from .problems import Problems
 from .rows import ImportTable, of_role
@@ -23,8 +23,7 @@ from .tables import read_table, read_tables
 
 def _natural(file):
     """Sort key that compares numbers in names by value."""
-    return [(0, int(word), "") if word.isdigit() and word.isascii() and len(word) < 1000 else (1, 0, word)
-            for word in re.split(r"([0-9]+)", file)]
+    return re.sub(r"[0-9]+", lambda number: number[0].zfill(100), file)
 
 
 def _group(parts):
@@ -77,13 +76,16 @@ def guess_tables(files, known):
         note_units(table.map)
     guess_frames(tables)
     grains = grains if has_plate else _grains_so_far(tables)
-    voxel_sizes = [table.map.number("voxel_size") for table in of_role(tables, "grains") if table.map.word("length_unit") == VOXEL]
-    voxel_size = known.voxel_size if known.voxel_size > 0 else voxel_sizes[0] if voxel_sizes else np.nan
+    voxel_size = next((table.map["voxel_size"] for table in of_role(tables, "grains") if "voxel_size" in table.map), None)
+    if voxel_size:
+        known = replace(known, voxel_size=float(voxel_size.word))
     for table in of_role(tables, "contacts"):
-        guess_contact_meaning(table, grains, known, voxel_size)
+        guess_contact_meaning(table, grains, known)
     for table in of_role(tables, "plate"):
-        guess_plate_units(table, tables, grains, known, voxel_size)
+        guess_plate_units(table, tables, grains, known)
     for table in tables:
+        if voxel_size and "voxel_size" in table.map:
+            table.map["voxel_size"] = voxel_size
         table.map.unused = unused_columns(table.map, table.parts[0].columns)
     return tables
 

@@ -8,9 +8,16 @@ from .names import LENGTHS, VOXEL, column_name, DOWNWARDS, is_among
 from .problems import Problems, number_text
 from .rows import of_role
 
+
 def plain_grains(table):
     """The grains with their raw numbers taken as metres."""
     return import_grains([table.changed(length_unit=guess("m", "stated", ""))], Problems())
+
+
+def _reach(grains):
+    """The lowest and the highest coordinates in each complete frame [frames][2][3]."""
+    radius = grains.diameter[:, None] / 2
+    return np.array([[(at - radius).min(axis=0), (at + radius).max(axis=0)] for at in grains.position if len(at) == len(radius)])
 
 
 def fitting_units(factors, value, scale, low, high):
@@ -21,6 +28,22 @@ def fitting_units(factors, value, scale, low, high):
 
 def length_factors(voxel_size):
     return {**LENGTHS, **({VOXEL: voxel_size} if np.isfinite(voxel_size) and voxel_size > 0 else {})}
+
+
+def decide_unit(mapped, key, fits, seen, otherwise, certainty="sure"):
+    """States the unit that a name tells, or the only one that `fits` the numbers `seen`; `otherwise` a word and the reason why
+    it is unclear."""
+    named = mapped.get(key)
+    if named and named.certainty == UNCLEAR:
+        return
+    if named and named.word in fits:
+        mapped[key] = guess(named.word, "sure", f"{named.why}, and {seen}")
+    elif named:
+        mapped[key] = guess(named.word, UNCLEAR, f"{named.why}, but {seen}")
+    elif len(fits) == 1:
+        mapped[key] = guess(fits[0], certainty, seen)
+    else:
+        mapped[key] = guess(otherwise[0], UNCLEAR, otherwise[1])
 
 
 def nearest_over_radii(position, diameter):
@@ -65,24 +88,17 @@ def _check_size(mapped, grains):
         mapped[now].why += f"; neighbours touch ({ratio:.2f} of the sum of radii)"
 
 
-def _unit_by_box(mapped, width, depth, known):
-    (box_x, box_y), named = known.box, mapped.get("length_unit")
-    factors = length_factors(known.voxel_size)
-    fits = [unit for unit in fitting_units(factors, width, box_x, 0.55, 1.15) if 0.55 < depth * factors[unit] / box_y < 1.15] \
-        if box_x > 0 else []
-    spans = f"the packing is {width:.4g} by {depth:.4g} wide, the box {box_x:g} by {box_y:g} m"
+def _guess_unit_by_box(mapped, width, depth, known):
+    (box_x, box_y), factors = known.box, length_factors(known.voxel_size)
     likely = "mm" if width > 0.5 else "m"
-    if named:
-        if named.certainty == UNCLEAR or box_x <= 0 or named.word not in factors:
-            return named
-        if named.word in fits:
-            return guess(named.word, "sure", "named so, and the packing fills the box")
-        return guess(named.word, UNCLEAR, f"{'the columns say so' if named.why == '' else named.why}, but {spans}")
-    if len(fits) == 1:
-        return guess(fits[0], "sure", spans)
     if box_x <= 0:
-        return guess(likely, UNCLEAR, "no name says it, and the box is not known: --set box.size=[..] would tell")
-    return guess(likely, UNCLEAR, ("several units make" if fits else "no unit makes") + f" the packing fit the box: {spans}")
+        unknown = guess(likely, UNCLEAR, "no name says it, and the box is not known: --set box.size=[..] would tell")
+        mapped.entries.setdefault("length_unit", unknown)
+    elif mapped.word("length_unit", "m") in factors:
+        fits = [unit for unit in fitting_units(factors, width, box_x, 0.55, 1.15) if 0.55 < depth * factors[unit] / box_y < 1.15]
+        spans = f"the packing is {width:.4g} by {depth:.4g} wide, the box {box_x:g} by {box_y:g} m"
+        number = "several units make" if fits else "no unit makes"
+        decide_unit(mapped, "length_unit", fits, spans, (likely, f"{number} the packing fit the box: {spans}"))
 
 
 def state_voxel_size(mapped, known, width=0):
@@ -115,18 +131,17 @@ def _guess_origin(mapped, low, high, grains, box):
 
 def guess_grain_lengths(table, known):
     mapped, grains = table.map, plain_grains(table)
-    if not grains.keys or not len(grains.diameter) or len(grains.position[0]) != len(grains.diameter):
+    if not grains.keys:
         return
     _check_size(mapped, grains)
-    low = (grains.position[0] - grains.diameter[:, None] / 2).min(axis=0)
-    high = (grains.position[0] + grains.diameter[:, None] / 2).max(axis=0)
+    low, high = _reach(grains)[0]
     width, depth = (high - low)[:2]
-    mapped["length_unit"] = _unit_by_box(mapped, width, depth, known)
+    _guess_unit_by_box(mapped, width, depth, known)
     state_voxel_size(mapped, known, width)
     _guess_origin(mapped, low, high, grains, known.box)
 
 
-def _end_that_gives(ends, diameter):
+def _end_that_moves(ends, diameter):
     """The end that moves towards the other one between the highest and the lowest frame; it is the one with the plate."""
     heights = ends[:, 1] - ends[:, 0]
     lowest, highest = ends[np.argmin(heights)], ends[np.argmax(heights)]
@@ -134,50 +149,38 @@ def _end_that_gives(ends, diameter):
     if not shrink > 0.1 * diameter:  # smaller changes may be noise
         return "none"
     at_low = (lowest[0] - highest[0]) / shrink
-    return "low" if at_low > 0.8 else "high" if at_low < 0.2 else "both"
+    return "lower" if at_low > 0.8 else "upper" if at_low < 0.2 else "both"
 
 
-def _upwards(column, now, ends, diameter):
-    """Guesses the direction of z, not reversed so far, from the ends of the packing and the column's name."""
-    gives, margin, (low, high) = _end_that_gives(ends, diameter), 0.12 * diameter, ends[0]
-    negated, reach = "-" + column, f"grains reach from {low:.4g} to {high:.4g}"
-    if is_among(column_name(column).base, DOWNWARDS):
-        if gives in ("high", "both"):
-            return guess(negated, UNCLEAR, "its name says downwards, but the packing moves at its upper end: remove the - if z is upwards")
-        return guess(negated, "sure", "its name says downwards")
-    if gives == "low" and abs(high) < margin:
-        return guess(negated, "sure", reach + ", and the packing moves at its lower end: z is downwards")
-    if gives == "low":
-        return guess(negated, UNCLEAR, reach + ", and the packing moves at its lower end: is z downwards? If not, remove the -")
-    if gives == "both":
-        return guess(now.word, UNCLEAR, "the packing moves at both ends: is z upwards, and does the floor stand still?")
-    if gives == "none" and high < margin and low < -margin:
-        return guess(negated, UNCLEAR, reach + ": is z downwards? If not, remove the -")
-    if gives == "high" and now.certainty != UNCLEAR:
-        now.why += "; upwards, because the packing moves at its upper end"
-    return now
+def _upwards(now, ends, diameter):
+    """The entry for z, not reversed so far, with its direction from the ends of the packing and the column's name."""
+    end, margin, (low, high) = _end_that_moves(ends, diameter), 0.12 * diameter, ends[0]
+    down, reach = "-" + now.word, f"grains reach from {low:.4g} to {high:.4g}"
+    named = is_among(column_name(now.word).base, DOWNWARDS)
+    rules = [  # the first one that applies is used
+        (named and end in ("upper", "both"), down, UNCLEAR,
+         "its name says downwards, but the packing moves at its upper end: remove the - if z is upwards"),
+        (named, down, "sure", "its name says downwards"),
+        (end == "lower" and abs(high) < margin, down, "sure", f"{reach}, and the packing moves at its lower end: z is downwards"),
+        (end == "lower", down, UNCLEAR, f"{reach}, and the packing moves at its lower end: is z downwards? If not, remove the -"),
+        (end == "both", now.word, UNCLEAR, "the packing moves at both ends: is z upwards, and does the floor stand still?"),
+        (end == "none" and high < margin and low < -margin, down, UNCLEAR, f"{reach}: is z downwards? If not, remove the -"),
+        (end == "upper", now.word, now.certainty, f"{now.why}; upwards, because the packing moves at its upper end"),
+        (True, now.word, now.certainty, now.why)]
+    return next(guess(*rule) for applies, *rule in rules if applies)
 
 
 def guess_grains_upwards(tables):
     """Reverses z if that is certain; marks it as unclear if it is possible."""
-    told = []  # and whether the frames decide
+    single = []  # z of the tables of one frame, which do not tell its direction
     for table in of_role(tables, "grains"):
-        if "z" not in table.map:
-            continue
         _guess_same_diameter(table)
         grains = plain_grains(table)
-        if not grains.keys or not len(grains.diameter):
-            continue
-        ends = []
-        for position in grains.position:
-            n = min(len(position), len(grains.diameter))
-            z, radius = position[:n, 2], grains.diameter[:n] / 2
-            ends.append([(z - radius).min(), (z + radius).max()])
-        z = table.map["z"]
-        if len(z.words) == 1:
-            table.map["z"] = _upwards(z.word, z, np.array(ends), float(np.median(grains.diameter)))
-        told.append((table.map, len(grains.keys) > 1))
-    if any(mapped.word("z").startswith("-") for mapped, _ in told):
-        for mapped, several in told:
-            if not several and not mapped.word("z").startswith("-"):
-                mapped["z"].certainty, mapped["z"].why = UNCLEAR, "it is downwards in another table: write a - before its name if it is here too"
+        if grains.keys and len(table.map["z"].words) == 1:
+            table.map["z"] = _upwards(table.map["z"], _reach(grains)[:, :, 2], float(np.median(grains.diameter)))
+        if len(grains.keys) == 1:
+            single.append(table.map["z"])
+    if any(table.map.word("z").startswith("-") for table in of_role(tables, "grains")):
+        for z in single:
+            if not z.word.startswith("-"):
+                z.certainty, z.why = UNCLEAR, "it is downwards in another table: write a - before its name if it is here too"
