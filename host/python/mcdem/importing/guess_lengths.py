@@ -4,7 +4,7 @@ import numpy as np
 from .assemble import import_grains
 from .guess_names import is_trackpy
 from .mapping import SIZE_KEYS, UNCLEAR, guess
-from .names import LENGTHS, VOXEL, column_name, DOWNWARDS, is_among
+from .names import LENGTHS, DOWNWARDS, VOXEL, column_name
 from .problems import Problems, number_text
 from .rows import of_role
 
@@ -156,7 +156,7 @@ def _upwards(now, ends, diameter):
     """The entry for z, not reversed so far, with its direction from the ends of the packing and the column's name."""
     end, margin, (low, high) = _end_that_moves(ends, diameter), 0.12 * diameter, ends[0]
     down, reach = "-" + now.word, f"grains reach from {low:.4g} to {high:.4g}"
-    named = is_among(column_name(now.word).base, DOWNWARDS)
+    named = column_name(now.word).base in DOWNWARDS.split()
     rules = [  # the first one that applies is used
         (named and end in ("upper", "both"), down, UNCLEAR,
          "its name says downwards, but the packing moves at its upper end: remove the - if z is upwards"),
