@@ -102,68 +102,60 @@ def mapping_of(tables):
 
 def wrong_rows(tables):
     """Problems in the tables of plate and grains that prevent further guesses, if their columns are known."""
-    lines = []
+    problems = []
     for table in tables:
-        columns_known = all(of.certainty != UNCLEAR or "_" in key for key, of in table.map.entries.items())
-        if not columns_known or table.map.role_certainty == UNCLEAR:
+        certainties = [of.certainty for key, of in table.map.entries.items() if "_" not in key]
+        if UNCLEAR in (table.map.role_certainty, *certainties):
             continue
-        problems = Problems()
+        of_table = Problems()
         if table.role == "plate":
-            import_plate(table, np.nan, problems)
+            import_plate(table, np.nan, of_table)
         if table.role == "grains":
-            import_grains([table], problems)
-        lines += problems.lines()
-    return lines
-
-
-def _columns_in(mapped, part):
-    """Number of columns that the mapping names in this table, if the file has all of them; -1 if it lacks one."""
-    words = [word for _, words in columns_of(mapped) for word in words]
-    return len(words) if all(part.find(signed_column(word)[1]) is not None for word in words) else -1
+            import_grains([table], of_table)
+        problems += of_table.lines()
+    return problems
 
 
 def _distribute(files, tables, problems):
-    """Assigns each file to the best matching table; a tie is a problem."""
+    """Assigns each file to the table with most columns, all of which the file has; a tie is a problem."""
     for file in files:
-        best, most, why = None, 0, f"{file}: must have the columns of a table of the mapping, got others"
+        fits, why = {}, f"{file}: must have the columns of a table of the mapping, got others"
         for table in tables:
-            if table.role == "unused":
-                continue
+            words = [word for _, words in columns_of(table.map) for word in words]
             try:
                 part = read_table(file, table.map.form)
             except InputError as error:
-                why = why if best else str(error)
-                continue
-            columns = _columns_in(table.map, part)
-            if columns == most and best:
-                why, best = f"{file}: must fit one table of the mapping, got two that it fits: name the files in the mapping", None
-            elif columns > most:
-                best, most = (table, part), columns
-        if best:
-            best[0].parts.append(best[1])
-            best[0].map.files.append(file)
+                why = str(error)
+            else:
+                if all(part.find(signed_column(word)[1]) is not None for word in words):
+                    fits.setdefault(len(words), []).append((table, part))
+        best = fits[max(fits)] if fits else []
+        if len(best) == 1:
+            [(table, part)] = best
+            table.parts.append(part)
+            table.map.files.append(file)
         else:
-            problems.append(why)
+            problems.append(f"{file}: must fit one table of the mapping, got two that it fits: name the files in the mapping" if best else why)
 
 
 def read_import_tables(mapping, files=(), file="mapping"):
     """Reads the files of the tables in a mapping. `files`, if given, replace those of the mapping: each is assigned to the
     table whose columns it has."""
-    tables, problems = [], []
-    for mapped in mapping:
-        tables.append(ImportTable(mapped.changed(), []))
+    tables, problems = [ImportTable(mapped.changed(), []) for mapped in mapping], []
+    if files:
+        tables = [table for table in tables if table.role != "unused"]
+        before = [table.map.files[0] for table in tables]
+        for table in tables:
+            table.map.files = []
+        _distribute(files, tables, problems)
+        problems = problems or [f"{file}:{table.map.line}: the table of {table.role}, {first} there, must have a file too, got none among those "
+                                "given: give it, or remove the table from the mapping" for table, first in zip(tables, before) if not table.parts]
+    for table in tables:
         try:
-            tables[-1].parts = read_tables([] if files or mapped.role == "unused" else mapped.files, mapped.form)
+            if not files and table.role != "unused":
+                table.parts = read_tables(table.map.files, table.map.form)
         except InputError as error:
             problems += error.problems
-        tables[-1].map.files = [] if files else mapped.files
-    if files:
-        _distribute(files, tables, problems)
-        for table, mapped in zip(tables, mapping):
-            if not problems and table.role != "unused" and not table.map.files:
-                problems.append(f"{file}:{mapped.line}: the table of {mapped.role}, {mapped.files[0]} there, must have a file too, got none "
-                                "among those given: give it, or remove the table from the mapping")
-        tables = [table for table in tables if table.map.files]
     if problems:
         raise InputError(problems)
     return tables

@@ -18,19 +18,19 @@ def _plain_rows(table, start):
 
 
 class _Plate:
-    """The plate's rows together with the frames of the grains."""
+    """The plate's rows, and those of frames of the grains."""
 
     def __init__(self, rows, grains):
         self.rows, self.grains = rows, grains
-        of_frames = rows.index.find(grains.keys) if grains.row is None else np.array(grains.row, int)
+        row = rows.index.find(grains.keys) if grains.row is None else np.array(grains.row, int)
         # Frames refer to the first table of the plate; a second one may be shorter.
-        self.row = np.where(of_frames < len(rows), of_frames, -1)
-        self.frames = np.flatnonzero(self.row >= 0)
-        self.z, self.force = rows.z[self.row[self.frames]], np.abs(rows.force[self.row[self.frames]])  # of each of these frames
+        self.frames = np.flatnonzero((row >= 0) & (row < len(rows)))
+        self.row = row[self.frames]
+        self.z, self.force = rows.z[self.row], np.abs(rows.force[self.row])
 
     def force_ratio(self, expected):
         """Median over the loaded frames of the ratio of the table's force to the expected one of each of `frames`."""
-        loaded = (self.force > 0.2 * np.nanmax(np.abs(self.rows.force))) & (expected > 0)
+        loaded = (self.force > 0.2 * np.fmax.reduce(np.abs(self.rows.force))) & (expected > 0)
         return float(np.median(self.force[loaded] / expected[loaded])) if loaded.any() else np.nan
 
 
@@ -53,7 +53,7 @@ def _guess_origin(mapped, plate, factors, grains_factor):
     if "plate_z" not in mapped or not np.isfinite(plate.rows.z).any():
         return
     lowest = int(np.nanargmin(plate.rows.z))
-    height, frames = plate.rows.z[lowest], np.flatnonzero(plate.row == lowest)
+    height, frames = plate.rows.z[lowest], plate.frames[plate.row == lowest]
     top = plate.grains.top(frames[-1]) if len(frames) else 0.0
     sign, column = signed_column(mapped.word("plate_z"))
     rests = top > 0 and fitting_units(factors, height, top, 0.85, 1.15)
