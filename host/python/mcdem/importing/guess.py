@@ -33,9 +33,8 @@ def _group(parts):
         groups.setdefault((tuple(part.columns), part.format, part.form) if part.named else number, []).append(part)
     tables = []
     for group in groups.values():
-        group.sort(key=lambda part: _natural(part.file))
-        if all(part.frames for part in group):
-            group.sort(key=lambda part: part.frames[0][0])
+        are_dumps = all(part.frames for part in group)
+        group.sort(key=lambda part: (part.frames[0][0] if are_dumps else 0, _natural(part.file)))
         mapped = MappedTable(files=[part.file for part in group], form=group[0].form if group[0].format == "text" else None)
         if not any(part.decimal_clear for part in group):
             mapped.decimal_unclear = "every comma has three digits behind it: if they part thousands, write the table without them"
@@ -69,13 +68,12 @@ def guess_tables(files, known):
     open_ = [table for table in of_role(tables, "unused") if table.map.role_certainty == UNCLEAR]
     for table in open_:
         guess_contacts_by_values(table, grains)
-    has_plate = bool(of_role(tables, "plate"))
+    for table in [] if of_role(tables, "plate") else of_role(open_, "unused"):
+        guess_plate_by_values(table)
     for table in open_:
-        if table.role == "unused" and not has_plate:
-            guess_plate_by_values(table)
         note_units(table.map)
     guess_frames(tables)
-    grains = grains if has_plate else _grains_so_far(tables)
+    grains = _grains_so_far(tables)
     voxel_size = next((table.map["voxel_size"] for table in of_role(tables, "grains") if "voxel_size" in table.map), None)
     if voxel_size:
         known = replace(known, voxel_size=float(voxel_size.word))

@@ -101,7 +101,7 @@ def _guess_force_on(table, places, grains, box):
 
 def _guess_sides(mapped, frames):
     pairs = np.column_stack([frames.frame, frames.grain, frames.partner])[frames.partner >= 0]
-    listed = set(map(tuple, pairs))
+    listed = set(map(tuple, pairs.tolist()))
     twice = sum((frame, partner, grain) in listed for frame, grain, partner in listed)
     mapped["sides"] = guess("both" if twice > 0.5 * len(listed) else "one", "sure" if twice in (0, len(listed)) else "likely",
                             f"{twice} of {len(listed)} pairs are there from either side")

@@ -2,7 +2,7 @@
 import numpy as np
 
 from .assemble import import_grains
-from .guess_names import is_trackpy
+from .guess_names import program_of
 from .mapping import SIZE_KEYS, UNCLEAR, guess
 from .names import LENGTHS, DOWNWARDS, VOXEL, column_name
 from .problems import Problems, number_text
@@ -60,32 +60,23 @@ def nearest_over_radii(position, diameter):
     return float(np.median(ratio.min(axis=1)))
 
 
-def _guess_same_diameter(table):
-    """A suggestion if there is no column for the size."""
-    mapped = table.map
-    if any(key in mapped for key in (*SIZE_KEYS, "same_diameter")) or not all(axis in mapped for axis in "xyz"):
-        return
-    grains = plain_grains(table.changed(same_diameter=guess("1", "stated", "")))
-    if grains.keys:
-        distance = nearest_over_radii(grains.position[0], grains.diameter)
-        why = "trackpy's size is the radius of gyration of the brightness, not a radius" if is_trackpy(table.parts[0].columns) \
+def _guess_size(table):
+    """Distinguishes radii and diameters: with the wrong one, distances between neighbours are wrong by a factor of two. Proposes
+    a diameter if there is no column for the size."""
+    mapped, key = table.map, next((key for key in SIZE_KEYS if key in table.map), None)
+    grains = plain_grains(table if key else table.changed(same_diameter=guess("1", "stated", "")))
+    ratio = nearest_over_radii(grains.position[0], grains.diameter) if grains.keys else np.nan
+    low, high, other = {"radius": (0.35, 0.6, "diameter"), "diameter": (1.65, 2.6, "radius")}.get(key, (0, 0, ""))
+    if not key:
+        why = "trackpy's size is the radius of gyration of the brightness, not a radius" if program_of(table.parts[0].columns) == "trackpy" \
             else "no column has a size"
-        mapped["same_diameter"] = guess(f"{distance:.4g}" if distance > 0 else "1", UNCLEAR, why + "; the nearest neighbours are so far apart: "
-                                        "are all grains of one size? If not, add a column with diameters or radii to the table")
-
-
-def _check_size(mapped, grains):
-    """Distinguishes radii and diameters: with the wrong one, distances between neighbours are wrong by a factor of two."""
-    now, other = ("radius", "diameter") if "radius" in mapped else ("diameter", "radius")
-    if now not in mapped:
-        return
-    ratio = nearest_over_radii(grains.position[0], grains.diameter)
-    if (0.35 < ratio < 0.6) if now == "radius" else (1.65 < ratio < 2.6):
-        mapped[now].certainty = UNCLEAR
-        mapped[now].why = (f"but then the nearest neighbours are {ratio:.2f} times the sum of their radii apart: is it the {other}? "
-                           f"Then write {other} in place of {now}")
-    elif 0.75 < ratio < 1.25 and mapped[now].certainty != UNCLEAR:
-        mapped[now].why += f"; neighbours touch ({ratio:.2f} of the sum of radii)"
+        mapped["same_diameter"] = guess(f"{ratio:.4g}" if ratio > 0 else "1", UNCLEAR, why + "; the nearest neighbours are so far apart: are all "
+                                        "grains of one size? If not, add a column with diameters or radii to the table")
+    elif low < ratio < high:
+        mapped[key] = guess(mapped.word(key), UNCLEAR, f"but then the nearest neighbours are {ratio:.2f} times the sum of their radii apart: is it "
+                            f"the {other}? Then write {other} in place of {key}")
+    elif 0.75 < ratio < 1.25 and mapped[key].certainty != UNCLEAR:
+        mapped[key].why += f"; neighbours touch ({ratio:.2f} of the sum of radii)"
 
 
 def _guess_unit_by_box(mapped, width, depth, known):
@@ -133,7 +124,6 @@ def guess_grain_lengths(table, known):
     mapped, grains = table.map, plain_grains(table)
     if not grains.keys:
         return
-    _check_size(mapped, grains)
     low, high = _reach(grains)[0]
     width, depth = (high - low)[:2]
     _guess_unit_by_box(mapped, width, depth, known)
@@ -144,11 +134,10 @@ def guess_grain_lengths(table, known):
 def _end_that_moves(ends, diameter):
     """The end that moves towards the other one between the highest and the lowest frame; it is the one with the plate."""
     heights = ends[:, 1] - ends[:, 0]
-    lowest, highest = ends[np.argmin(heights)], ends[np.argmax(heights)]
-    shrink = heights.max() - heights.min()
+    shrink = np.ptp(heights)
     if not shrink > 0.1 * diameter:  # smaller changes may be noise
         return "none"
-    at_low = (lowest[0] - highest[0]) / shrink
+    at_low = (ends[np.argmin(heights), 0] - ends[np.argmax(heights), 0]) / shrink
     return "lower" if at_low > 0.8 else "upper" if at_low < 0.2 else "both"
 
 
@@ -174,7 +163,7 @@ def guess_grains_upwards(tables):
     """Reverses z if that is certain; marks it as unclear if it is possible."""
     single = []  # z of the tables of one frame, which do not tell its direction
     for table in of_role(tables, "grains"):
-        _guess_same_diameter(table)
+        _guess_size(table)
         grains = plain_grains(table)
         if grains.keys and len(table.map["z"].words) == 1:
             table.map["z"] = _upwards(table.map["z"], _reach(grains)[:, :, 2], float(np.median(grains.diameter)))

@@ -1,32 +1,32 @@
 """Guesses role and columns of a table from the names of its columns, with their units."""
+import re
+
 from .mapping import SIZE_KEYS, UNCLEAR, Guess, guess, signed_column
 from .names import COUNTED, FORCES, LENGTH_WORDS, VOXEL, column_name, columns_by_key
 
 LENGTH_KEYS = ("x", "y", "z", *SIZE_KEYS, "plate_z", "displacement")
 FORCE_KEYS = ("fx", "fy", "fz", "force", "top_force", "set_force")
+PROGRAMS = {"SPAM": {"Label", "Zpos", "Ypos", "Xpos"}, "trackpy": {"mass", "signal"}, "scikit-image": {"centroid-2"}}
 
 
 def _role_of(columns):
+    """Role, certainty and reason."""
     contacts, grains, plate = (columns_by_key(role, columns).keys() for role in ("contacts", "grains", "plate"))
-    if {"grain", "partner"} <= contacts and ({"fx", "fy", "fz"} <= contacts or "force" in contacts):
-        return "contacts"
-    if {"x", "y", "z"} <= grains and (grains & {*SIZE_KEYS} or _size_is_missing(columns)):
-        return "grains"
-    if "top_force" in plate and plate & {"plate_z", "displacement"}:
-        return "plate"
-    return None
+    bases, pairs = [column_name(column).base for column in columns], {"grain", "partner"} <= contacts
+    roles = {"contacts": pairs and ({"fx", "fy", "fz"} <= contacts or "force" in contacts),
+             "grains": {"x", "y", "z"} <= grains and (grains & {*SIZE_KEYS} or program_of(columns)),
+             "plate": "top_force" in plate and plate & {"plate_z", "displacement"}}
+    if role := next((role for role, is_so in roles.items() if is_so), None):
+        return role, "sure", "its columns are named so"
+    # Contact lists of SPAM: labels of grains, orientations, numbers of voxels.
+    if pairs and {"label1", "lab1", "labeli"} & {*bases} and not any(base.startswith(("f", "kraft")) for base in bases):
+        return "unused", "likely", "pairs of grains that touch, without forces: an experiment's contacts have forces"
+    return "unused", UNCLEAR, "its columns say nothing that is known"
 
 
-def is_trackpy(columns):
-    return {"mass", "ecc", "signal"} <= set(columns) or {"raw_mass", "signal"} <= set(columns)
-
-
-def is_spam(columns):
-    return {"Label", "Zpos", "Ypos", "Xpos"} <= set(columns)
-
-
-def _size_is_missing(columns):
-    return is_trackpy(columns) or is_spam(columns) or ("centroid-2" in columns and "label" in columns)
+def program_of(columns):
+    """The image analysis program that names columns so, empty if there is none."""
+    return next((program for program, names in PROGRAMS.items() if names <= set(columns)), "")
 
 
 def _note_unit(mapped, key, keys, known):
@@ -47,42 +47,22 @@ def note_units(mapped):
     _note_unit(mapped, "force_unit", FORCE_KEYS, list(FORCES))
 
 
-def _note_tangential(mapped, columns):
-    """A magnitude of the normal force together with a tangential one without direction."""
-    for column in columns:
-        base = column_name(column).base
-        if base.startswith(("ft", "fs")) or any(word in base for word in ("tang", "shear", "scher")):
-            mapped["force"].certainty = UNCLEAR
-            mapped["force"].why = f"{column} would not be used: give fx, fy, fz, or confirm that the normal part is enough"
-
-
 def _note_programs(mapped, columns):
     """Columns of image analysis programs."""
-    if is_spam(columns):
+    program = program_of(columns)
+    if program == "SPAM":
         for axis in "xyz" if "Xdisp" in columns else "":
             mapped[axis] = Guess([f"{axis.upper()}pos", f"{axis.upper()}disp"], "sure", "SPAM's position and displacement")
         mapped["where"] = guess("Label", "likely", "label 0 is the background")
-    program = "SPAM" if is_spam(columns) else "trackpy" if is_trackpy(columns) else "scikit-image" if "centroid-2" in columns else ""
-    if program and "length_unit" not in mapped:
-        mapped["length_unit"] = guess(VOXEL, "likely", f"{program} counts in voxels")
-
-
-def _only_touching(columns):
-    """Contact lists of SPAM: labels of grains, orientations, numbers of voxels."""
-    bases = {column_name(column).base for column in columns}
-    return bool({"label1", "lab1", "labeli"} & bases) and not any(base.startswith(("f", "kraft")) for base in bases)
+    if program:
+        mapped.entries.setdefault("length_unit", guess(VOXEL, "likely", f"{program} counts in voxels"))
 
 
 def guess_by_names(table):
     mapped, columns, repeated = table.map, table.parts[0].columns, table.parts[0].repeated
-    role = _role_of(columns)
-    if not role:
-        pairs = {"grain", "partner"} <= columns_by_key("contacts", columns).keys() and _only_touching(columns)
-        mapped.role, (mapped.role_certainty, mapped.role_why) = "unused", (
-            "likely", "pairs of grains that touch, without forces: an experiment's contacts have forces") if pairs else (
-            UNCLEAR, "its columns say nothing that is known")
+    mapped.role, mapped.role_certainty, mapped.role_why = role, *_ = _role_of(columns)
+    if role == "unused":
         return
-    mapped.role, mapped.role_certainty, mapped.role_why = role, "sure", "its columns are named so"
     found = columns_by_key(role, columns)
     times = [name for name in found.get("frame", []) if column_name(name).base in COUNTED["time"].split()]
     if role == "plate" and times:
@@ -99,8 +79,10 @@ def guess_by_names(table):
         if names[0] in repeated:
             one, why = False, "several columns have this very name, and this is the first of them"
         mapped[key] = guess(names[0], "sure" if one else UNCLEAR, why)
-    if "force" in mapped:
-        _note_tangential(mapped, columns)
+    for column in columns if "force" in mapped else ():  # besides the magnitude of a normal force
+        if re.match("f[ts]|.*(tang|shear|scher)", column_name(column).base):
+            mapped["force"] = guess(mapped.word("force"), UNCLEAR,
+                                    f"{column} would not be used: give fx, fy, fz, or confirm that the normal part is enough")
     note_units(mapped)
     if role == "grains":
         _note_programs(mapped, columns)

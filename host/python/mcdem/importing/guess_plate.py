@@ -37,7 +37,7 @@ class _Plate:
 def _guess_downwards(mapped, rows):
     """Guesses the direction: the force increases while the plate moves down."""
     place = "displacement" if "displacement" in mapped else "plate_z"
-    if len(rows) < 3 or mapped[place].certainty == UNCLEAR or not np.isfinite(rows.z).any():
+    if len(rows) < 3 or mapped[place].certainty == UNCLEAR or not np.isfinite(rows.z + rows.force).any():
         return
     low, high, force = np.nanmin(rows.z), np.nanmax(rows.z), np.abs(rows.force)
     above = np.nanmean(force[rows.z >= high - 0.2 * (high - low)])
@@ -47,7 +47,7 @@ def _guess_downwards(mapped, rows):
                               "if the column is taken as it is, and the plate presses on its way down")
 
 
-def _guess_origin(mapped, plate, factors, grains_factor):
+def _guess_origin(mapped, plate, factors, unit_of_grains):
     """The origin of a plate below 0 is not the floor; that of a downward column that does not touch the grains at its
     lowest position may be elsewhere as well."""
     if "plate_z" not in mapped or not np.isfinite(plate.rows.z).any():
@@ -59,8 +59,7 @@ def _guess_origin(mapped, plate, factors, grains_factor):
     rests = top > 0 and fitting_units(factors, height, top, 0.85, 1.15)
     if height > 0 and (sign > 0 or rests):
         return
-    unit = mapped.length_factor() if "length_unit" in mapped else grains_factor
-    mapped["origin_z"] = guess(f"{sign * (height - top / (unit or 1)):.6g}" if top > 0 else "0", UNCLEAR,
+    mapped["origin_z"] = guess(f"{sign * (height - top / (mapped.length_factor(unit_of_grains) or 1)):.6g}" if top > 0 else "0", UNCLEAR,
                                f"counted from 0 the plate would be at {height:.4g} at the lowest: where is the floor, as {column} counts?")
 
 
@@ -97,10 +96,6 @@ def _contact_forces(tables, grains):
     return np.where(counts > 0, sums, np.nan)
 
 
-def _unclear_lengths(mapped):
-    return any(key in mapped and mapped[key].certainty == UNCLEAR for key in ("length_unit", "voxel_size", "origin_z", "same_diameter"))
-
-
 def _guess_force(table, others, plate, known):
     mapped, force = table.map, plate.rows.force[np.isfinite(plate.rows.force)]
     low, high = force.min(initial=np.inf), force.max(initial=-np.inf)
@@ -115,7 +110,8 @@ def _guess_force(table, others, plate, known):
         overlaps = tops - (start - mapped.length_factor() * (start - plate.z))[:, None]
         ratio, truth = plate.force_ratio(hertz_force(known, radius, np.inf, overlaps).sum(axis=1)), "of Hertz from the overlaps with the plate"
     named = mapped.get("force_unit")
-    if named and by_hertz and (np.isnan(ratio) or any(_unclear_lengths(other.map) for other in (*others, table))):
+    lengths = [other.map.get(key) for other in others for key in ("length_unit", "voxel_size", "origin_z", "same_diameter")]
+    if named and by_hertz and (np.isnan(ratio) or any(entry and entry.certainty == UNCLEAR for entry in lengths)):
         return
     # Hertz's law is rough for strong compression and errors of position: a name is more reliable.
     factors, off = {named.word: FORCES[named.word]} if named else FORCE_FACTORS, 1.65 if not by_hertz else 30 if named else 3.1
@@ -134,10 +130,10 @@ def guess_plate_units(table, tables, grains, known):
     if not len(rows):
         return
     factors = length_factors(known.voxel_size)
-    of_grains = next((other.map for other in of_role(tables, "grains")), None)
+    unit_of_grains = next((other.map.word("length_unit", "m") for other in of_role(tables, "grains")), "m")
     _guess_downwards(mapped, rows)
     state_voxel_size(mapped, known)
-    _guess_origin(mapped, _Plate(_plain_rows(table, start), grains), factors, of_grains.length_factor() if of_grains else 1)
+    _guess_origin(mapped, _Plate(_plain_rows(table, start), grains), factors, unit_of_grains)
     plate = _Plate(_plain_rows(table, start), grains)
     _guess_height(mapped, plate, known.plate_start, factors)
     state_voxel_size(mapped, known)
