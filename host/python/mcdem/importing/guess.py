@@ -43,7 +43,8 @@ def _group(parts):
 
 
 def _grains_so_far(tables):
-    """The tables read with the present mapping; empty if that is not possible yet."""
+    """The grains in frames of the plate, read with the present mapping; empty if that is not possible yet."""
+    guess_frames(tables)
     of_grains, problems = of_role(tables, "grains"), Problems()
     grains = import_grains(of_grains, problems)
     if problems.count or not grains.keys:
@@ -63,7 +64,6 @@ def guess_tables(files, known):
     guess_grains_upwards(tables)
     for table in of_role(tables, "grains"):
         guess_grain_lengths(table, known)
-    guess_frames(tables)
     grains = _grains_so_far(tables)
     open_ = [table for table in of_role(tables, "unused") if table.map.role_certainty == UNCLEAR]
     for table in open_:
@@ -72,7 +72,6 @@ def guess_tables(files, known):
         guess_plate_by_values(table)
     for table in open_:
         note_units(table.map)
-    guess_frames(tables)
     grains = _grains_so_far(tables)
     voxel_size = next((table.map["voxel_size"] for table in of_role(tables, "grains") if "voxel_size" in table.map), None)
     if voxel_size:

@@ -10,12 +10,17 @@ from .problems import Problems
 
 MAX_ROWS = 200_000  # maximum number of rows used for a guess
 NEAR = 1.2  # of the sum of radii: touching, including measurement errors
+ROUGH = 3.1  # factor by which Hertz's forces may be wrong; gf and kgf are then confused with mN and N
 FORCE_FACTORS = {unit: FORCES[unit] for unit in "N mN uN kN gf kgf".split()}  # the others are too similar to these
 
 
-def certainty_by_hertz(fits):
-    """gf and kgf are like mN and N with a modulus wrong by a factor of three."""
-    return UNCLEAR if {"gf", "kgf"} & set(fits) else "sure"
+def decide_force_unit(mapped, ratio, off, seen, unknown):
+    """The unit by the `ratio` of the raw numbers to forces [N] that may be `off` by a factor; NaN for the reason `unknown`."""
+    named = mapped.word("force_unit")
+    fits = fitting_units({named: FORCES[named]} if named else FORCE_FACTORS, ratio, 1, 1 / off, off)
+    confused = off >= ROUGH and {"gf", "kgf"} & set(fits)
+    seen = f"as newtons {seen}" if np.isfinite(ratio) else ""
+    decide_unit(mapped, "force_unit", fits, seen, ("N", seen or unknown), UNCLEAR if confused else "sure")
 
 
 def hertz_force(known, radius, other, overlap):
@@ -140,13 +145,11 @@ def _guess_force_unit(table, places, grains, known):
     deep = places.pair & (overlap > 0.01 * places.reach)
     ratios = np.linalg.norm(places.force, axis=1)[deep] / hertz_force(known, places.radius[deep], places.other_radius[deep], overlap[deep])
     ratio = float(np.median(ratios)) if len(ratios) >= 5 else np.nan
-    fits = fitting_units(FORCE_FACTORS, ratio, 1, 1 / 3.1, 3.1)
-    if len(fits) != 1 and table.parts[0].format != "text" and grains.diameter[0] < 1:
+    decide_force_unit(mapped, ratio, ROUGH, f"forces would be {ratio:.2g} times Hertz's from the overlaps",
+                      "no name says it; with --set grains.youngs_modulus=.. the overlaps may")
+    unit = mapped["force_unit"]
+    if unit.word == "N" and unit.certainty == UNCLEAR and table.parts[0].format != "text" and grains.diameter[0] < 1:
         mapped["force_unit"] = guess("N", "likely", "the grains are in metres, so the program counts in SI")
-    else:
-        decide_unit(mapped, "force_unit", fits, f"as newtons forces would be {ratio:.2g} times Hertz's from the overlaps",
-                    ("N", f"as newtons forces would be {ratio:.2g} times Hertz's" if np.isfinite(ratio)
-                     else "no name says it; with --set grains.youngs_modulus=.. the overlaps may"), certainty_by_hertz(fits))
 
 
 def guess_contact_meaning(table, grains, known):

@@ -105,19 +105,18 @@ def state_voxel_size(mapped, known, width=0):
 
 
 def _guess_origin(mapped, low, high, grains, box):
-    if box[0] <= 0:
-        return
     unit, margin = mapped.length_factor(), 0.12 * grains.diameter[0]  # soft grains overlap walls
-    for axis, key in enumerate(("origin_x", "origin_y", "origin_z")):
-        size = box[axis] / unit if axis < 2 else np.inf
-        reach = f"grains reach from {low[axis]:.4g} to {high[axis]:.4g}"
-        if low[axis] >= -margin and high[axis] <= size + margin:
-            mapped[key] = guess("0", UNCLEAR if axis == 2 and low[axis] > 5 * margin else "sure", reach)
-            continue
-        place = (low[axis] + high[axis] - size) / 2 if axis < 2 else low[axis]
-        place = -size / 2 if axis < 2 and abs(place + size / 2) < margin else place
-        mapped[key] = guess(f"{grains.sign[axis] * place:.6g}", UNCLEAR,
-                            reach + (f", the box is {size:.4g} wide" if axis < 2 else ", and the floor is not at 0"))
+    for axis, size in enumerate([*np.divide(box, unit), np.inf] if box[0] > 0 else ()):
+        begin, end = low[axis], high[axis]
+        word, certainty, why = 0, UNCLEAR, f"grains reach from {begin:.4g} to {end:.4g}"
+        if begin >= -margin and end <= size + margin:
+            certainty = UNCLEAR if axis == 2 and begin > 5 * margin else "sure"
+        elif axis == 2:
+            word, why = begin, f"{why}, and the floor is not at 0"
+        else:
+            middle = (begin + end) / 2
+            word, why = (0 if abs(middle) < margin else middle) - size / 2, f"{why}, the box is {size:.4g} wide"
+        mapped["origin_" + "xyz"[axis]] = guess(f"{grains.sign[axis] * word + 0:.6g}", certainty, why)
 
 
 def guess_grain_lengths(table, known):

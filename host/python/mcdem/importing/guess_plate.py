@@ -2,26 +2,21 @@
 import numpy as np
 
 from .contacts import import_contacts, wall_partner
-from .guess_contacts import FORCE_FACTORS, certainty_by_hertz, hertz_force
+from .guess_contacts import ROUGH, decide_force_unit, hertz_force
 from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
 from .mapping import UNCLEAR, guess, signed_column
-from .names import FORCES
 from .plate import import_plate
 from .problems import Problems
 from .rows import of_role
 
 
-def _plain_rows(table, start):
-    """The plate's table with its raw numbers taken as m and N."""
-    plain = {key: guess(word, "stated", "") for key, word in (("length_unit", "m"), ("force_unit", "N"), ("force_sign", "+"))}
-    return import_plate(table.changed(**plain), start, Problems())
-
-
 class _Plate:
-    """The plate's rows, and those of frames of the grains."""
+    """The plate's rows, their raw numbers taken as m and N, and those of frames of the grains."""
 
-    def __init__(self, rows, grains):
-        self.rows, self.grains = rows, grains
+    def __init__(self, table, start, grains):
+        plain = {key: guess(word, "stated", "") for key, word in (("length_unit", "m"), ("force_unit", "N"), ("force_sign", "+"))}
+        self.rows = rows = import_plate(table.changed(**plain), start if np.isfinite(start) else 0.0, Problems())
+        self.grains = grains
         row = rows.index.find(grains.keys) if grains.row is None else np.array(grains.row, int)
         # Frames refer to the first table of the plate; a second one may be shorter.
         self.frames = np.flatnonzero((row >= 0) & (row < len(rows)))
@@ -114,27 +109,23 @@ def _guess_force(table, others, plate, known):
     if named and by_hertz and (np.isnan(ratio) or any(entry and entry.certainty == UNCLEAR for entry in lengths)):
         return
     # Hertz's law is rough for strong compression and errors of position: a name is more reliable.
-    factors, off = {named.word: FORCES[named.word]} if named else FORCE_FACTORS, 1.65 if not by_hertz else 30 if named else 3.1
-    fits = fitting_units(factors, ratio, 1, 1 / off, off)
-    seen = f"the largest forces are {ratio:.3g} times those {truth} [N]" if np.isfinite(ratio) else ""
-    decide_unit(mapped, "force_unit", fits, seen, ("N", seen or "no name says it, and nothing is known to compare with"),
-                certainty_by_hertz(fits) if by_hertz else "sure")
+    decide_force_unit(mapped, ratio, 1.65 if not by_hertz else 30 if named else ROUGH, f"the largest forces would be {ratio:.3g} times those {truth}",
+                      "no name says it, and nothing is known to compare with")
 
 
 def guess_plate_units(table, tables, grains, known):
     mapped = table.map
     if "top_force" not in mapped or ("plate_z" not in mapped and "displacement" not in mapped):
         return
-    start = known.plate_start if np.isfinite(known.plate_start) else 0.0
-    rows = _plain_rows(table, start)
-    if not len(rows):
+    plate = _Plate(table, known.plate_start, grains)
+    if not len(plate.rows):
         return
     factors = length_factors(known.voxel_size)
     unit_of_grains = next((other.map.word("length_unit", "m") for other in of_role(tables, "grains")), "m")
-    _guess_downwards(mapped, rows)
+    _guess_downwards(mapped, plate.rows)
     state_voxel_size(mapped, known)
-    _guess_origin(mapped, _Plate(_plain_rows(table, start), grains), factors, unit_of_grains)
-    plate = _Plate(_plain_rows(table, start), grains)
+    _guess_origin(mapped, _Plate(table, known.plate_start, grains), factors, unit_of_grains)
+    plate = _Plate(table, known.plate_start, grains)
     _guess_height(mapped, plate, known.plate_start, factors)
     state_voxel_size(mapped, known)
     _guess_force(table, tables, plate, known)
