@@ -21,11 +21,6 @@ from .rows import ImportTable, of_role
 from .tables import read_table, read_tables
 
 
-def _natural(file):
-    """Sort key that compares numbers in names by value."""
-    return re.sub(r"[0-9]+", lambda number: number[0].zfill(100), file)
-
-
 def _group(parts):
     """Groups files with the same columns as frames of one table, ordered by the numbers in their names."""
     groups = {}
@@ -33,8 +28,9 @@ def _group(parts):
         groups.setdefault((tuple(part.columns), part.format, part.form) if part.named else number, []).append(part)
     tables = []
     for group in groups.values():
-        are_dumps = all(part.frames for part in group)
-        group.sort(key=lambda part: (part.frames[0][0] if are_dumps else 0, _natural(part.file)))
+        group.sort(key=lambda part: re.sub("[0-9]+", lambda number: number[0].zfill(100), part.file))
+        if all(part.frames for part in group):
+            group.sort(key=lambda part: part.frames[0][0])
         mapped = MappedTable(files=[part.file for part in group], form=group[0].form if group[0].format == "text" else None)
         if not any(part.decimal_clear for part in group):
             mapped.decimal_unclear = "every comma has three digits behind it: if they part thousands, write the table without them"
@@ -107,7 +103,7 @@ def wrong_rows(tables):
         of_table = Problems()
         if table.role == "plate":
             import_plate(table, np.nan, of_table)
-        if table.role == "grains":
+        elif table.role == "grains":
             import_grains([table], of_table)
         problems += of_table.lines()
     return problems

@@ -76,10 +76,10 @@ def _guess_offset(table, grains):
         share = _Places(trial, grains).touching()
         if share > most + 0.05:
             most, best = share, offset
-    certainty = "sure" if most > 0.9 else UNCLEAR if most > 0 else "likely"
-    why = f"{100 * most:.0f} % of the pairs touch then" if most > 0 else "no pairs to tell it by"
-    others = ": numbers of grains, frames or columns may be others" if certainty == UNCLEAR else ""
-    table.map["id_offset"] = guess(str(best), certainty, why + others)
+    share = f"{100 * most:.0f} % of the pairs touch then"
+    unclear = f"{share}: numbers of grains, frames or columns may be others"
+    told = ("sure", share) if most > 0.9 else (UNCLEAR, unclear) if most > 0 else ("likely", "no pairs to tell it by")
+    table.map["id_offset"] = guess(str(best), *told)
     set_walls(table.map, unknown_partners(table, grains, best), grains)
     if len(table.map.walls) > 6:
         table.map["partner"] = guess(table.map.word("partner"), UNCLEAR, "more than six of its numbers are no grains")
@@ -94,11 +94,9 @@ def _guess_force_on(table, places, grains, box):
     unknown = abs(abs(sign) - abs(other)) < 0.2
     if grains.sign[2] < 0 if unknown else abs(other) > abs(sign):
         mapped["fz"], sign = negated(fz), other
-        if unknown:
-            mapped["fz"].certainty, mapped["fz"].why = UNCLEAR, "z of the grains is downwards: are the forces too? If not, remove the -"
-        else:
-            mapped["fz"].certainty = UNCLEAR if fz.certainty == UNCLEAR else "sure"
-            mapped["fz"].why += f"; the other way, for so forces lie along the lines of centres (mean cosine {abs(other):.2f})"
+        mapped["fz"].certainty = UNCLEAR if unknown or fz.certainty == UNCLEAR else "sure"
+        mapped["fz"].why = "z of the grains is downwards: are the forces too? If not, remove the -" if unknown else (
+            f"{fz.why}; the other way, for so forces lie along the lines of centres (mean cosine {abs(other):.2f})")
     clear = abs(sign) > 0.5
     mapped["force_on"] = guess("partner" if sign < 0 else "grain", "sure" if clear else UNCLEAR,
                                "so forces push grains apart" if clear else "forces neither push grains apart nor together")
@@ -112,23 +110,18 @@ def _guess_sides(mapped, frames):
                             f"{twice} of {len(listed)} pairs are there from either side")
 
 
-def _point_units(places, grains, voxel_size, axes=(1, 1, 1)):
-    """Units in which contact points are on the surfaces of their grains."""
-    fits = []
-    for unit, factor in length_factors(voxel_size).items():
-        points = (places.point + grains.origin) * axes * factor - grains.origin
-        ratio = np.linalg.norm(points - places.centre, axis=1) / places.radius
-        if len(ratio) and 0.6 < np.median(ratio) < 1.3:
-            fits.append(unit)
-    return fits
-
-
 def _guess_point_unit(mapped, places, grains, known):
-    """Unit and direction of contact points: z may have the opposite sign of the present guess."""
+    """Unit and direction of contact points, which are on the surfaces of their grains: z may have the opposite sign of the
+    present guess."""
     if "x" not in mapped:
         return
-    fits = _point_units(places, grains, known.voxel_size)
-    if not fits and (fits := _point_units(places, grains, known.voxel_size, (1, 1, -1))):
+    factors = length_factors(known.voxel_size) if len(places.point) else {}
+    for axes in ((1, 1, 1), (1, 1, -1)):
+        points = (places.point + grains.origin) * axes
+        off = {unit: np.linalg.norm(points * factor - grains.origin - places.centre, axis=1) for unit, factor in factors.items()}
+        if fits := [unit for unit, distance in off.items() if 0.6 < np.median(distance / places.radius) < 1.3]:
+            break
+    if fits and axes[2] < 0:
         mapped["z"] = negated(mapped["z"])
         mapped["z"].why += "; the other way, for so the points lie on the grains' surfaces"
     if "length_unit" not in mapped or len(fits) == 1:

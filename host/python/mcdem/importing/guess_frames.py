@@ -50,25 +50,20 @@ def _choose_frame_column(table, plate):
 
 def _same_clock(a, b):
     """Times must have comparable units: stated ones are converted. Together with seconds, a name may omit the unit."""
-    if a.unit == b.unit:
-        return True
-    if not a.unit or not b.unit:
-        return 2 * len(a.keys) >= len(b.keys) and TIMES.get(a.unit or b.unit) == 1
-    return a.unit in TIMES and b.unit in TIMES
+    if a.unit and b.unit or a.unit == b.unit:
+        return a.unit == b.unit or (a.unit in TIMES and b.unit in TIMES)
+    return 2 * len(a.keys) >= len(b.keys) and TIMES.get(a.unit or b.unit) == 1
 
 
 def _by_numbers(word, frames, others):
     """Whether frames whose numbers all occur in `others` are the frames with these numbers."""
     alike = frames.counts == others.counts
-    if not _same_clock(frames, others):
-        likely = False
-    elif alike and frames.by == others.by or len(frames.keys) == len(others.keys):
-        likely = True
-    elif others.by == "place":  # row numbers, if they also start at 0
-        likely = frames.keys[0] == 0 and frames.counts != "time" and not frames.may_count_files
+    if others.by == "place":  # row numbers, if they also start at 0
+        comparable = frames.keys[0] == 0 and frames.counts != "time"
     else:
-        likely = not frames.may_count_files and (alike or not frames.counts and others.counts != "time")
-    if not likely:
+        comparable = alike or not frames.counts and others.counts != "time"
+    same = alike and frames.by == others.by or len(frames.keys) == len(others.keys)
+    if not _same_clock(frames, others) or not (same or comparable and not frames.may_count_files):
         return guess(word, UNCLEAR, f"{frames.told_by} here, {others.told_by} there: are they the same?")
     return guess(word, "sure" if alike and frames.by == others.by != "place" else "likely", f"the table of the {word} has all of them")
 

@@ -124,9 +124,8 @@ def guess_grain_lengths(table, known):
     if not grains.keys:
         return
     low, high = _reach(grains)[0]
-    width, depth = (high - low)[:2]
-    _guess_unit_by_box(mapped, width, depth, known)
-    state_voxel_size(mapped, known, width)
+    _guess_unit_by_box(mapped, *(high - low)[:2], known)
+    state_voxel_size(mapped, known, (high - low)[0])
     _guess_origin(mapped, low, high, grains, known.box)
 
 
