@@ -60,8 +60,8 @@ def _note_programs(mapped, columns):
 
 def guess_by_names(table):
     mapped, columns, repeated = table.map, table.parts[0].columns, table.parts[0].repeated
-    mapped.role, mapped.role_certainty, mapped.role_why = role, *_ = _role_of(columns)
-    if role == "unused":
+    mapped.role, mapped.role_certainty, mapped.role_why = _role_of(columns)
+    if (role := mapped.role) == "unused":
         return
     found = columns_by_key(role, columns)
     times = [name for name in found.get("frame", []) if column_name(name).base in COUNTED["time"].split()]
