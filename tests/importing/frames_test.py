@@ -43,6 +43,8 @@ class Frames(ImportCase):
         self.assertEqual(frames.certainty, "unclear")
         self.assertIn("there are 0 frames here", frames.why)
         self.expect_among(self.problems_of(lambda: self.imported(tables)), "grains.dump: must have rows")
+        grains = self.write("grains.csv", "time,id,x_m,y_m,z_m,d_m\n" + self.rows(0, "none,"))
+        self.expect_one(self.unclear(self.guess([self.plate("time"), grains])), "there are 0 frames here")
 
     def test_numbers_in_file_names_are_those_of_the_plate(self):
         files = [self.plate("frame")] + self.grain_files([(2, "grains_002.txt"), (3, "grains_003.txt"), (5, "grains_005.txt")])

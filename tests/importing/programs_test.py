@@ -65,7 +65,9 @@ class Forces(ImportCase):
         tables = self.guess(files)
         self.assertEqual(self.of(tables, "plate").word("force_unit"), "mN")
         self.assertEqual(self.unclear(tables), [])
-
+        for unit, certainty in (("cN", "sure"), ("daN", "unclear")):
+            self.write("kraft.csv", lab_plate(self.truth, Style(force=100)).replace("mN", unit))
+            self.assertEqual(self.of(self.guess(files), "plate")["force_unit"].certainty, certainty)
 
     def test_of_a_plate_are_no_pressures(self):
         files = self.write_lab()
@@ -234,6 +236,10 @@ class Images(ImportCase):
         self.assertEqual(self.of(tables, "contacts").word("length_unit"), "voxel")
         self.assertEqual(self.unclear(tables), [])
         self.expect_truth(tables)
+        self.known.voxel_size = np.nan
+        tables = self.guess(files)
+        self.assertEqual(self.of(tables, "contacts")["voxel_size"].certainty, "unclear")
+        self.assertEqual(self.of(tables, "contacts")["voxel_size"], self.of(tables, "grains")["voxel_size"])
 
     def test_spams_labels_without_radii_ask_for_one(self):
         self.known.voxel_size = VOXEL

@@ -1,6 +1,7 @@
 """Guesses the meaning of tables. A guess is sure if a name states it and the numbers do not contradict, or if the numbers allow
 only one possibility; it is unclear if they allow several."""
 import re
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,17 +15,10 @@ from .guess_names import guess_by_names, note_units
 from .guess_plate import guess_plate_units
 from .guess_values import guess_contacts_by_values, guess_grains_by_values, guess_plate_by_values
 from .mapping import UNCLEAR, Guess, MappedTable, columns_of, find_key, unused_columns, must_be_stated, signed_column
-from .names import VOXEL
 from .plate import import_plate
 from .problems import Problems
 from .rows import ImportTable, of_role
 from .tables import read_table, read_tables
-
-
-def _natural(file):
-    """Sort key that compares numbers in names by value."""
-    return [(0, int(word), "") if word.isdigit() and word.isascii() and len(word) < 1000 else (1, 0, word)
-            for word in re.split(r"([0-9]+)", file)]
 
 
 def _group(parts):
@@ -34,7 +28,7 @@ def _group(parts):
         groups.setdefault((tuple(part.columns), part.format, part.form) if part.named else number, []).append(part)
     tables = []
     for group in groups.values():
-        group.sort(key=lambda part: _natural(part.file))
+        group.sort(key=lambda part: re.sub("[0-9]+", lambda number: number[0].zfill(100), part.file))
         if all(part.frames for part in group):
             group.sort(key=lambda part: part.frames[0][0])
         mapped = MappedTable(files=[part.file for part in group], form=group[0].form if group[0].format == "text" else None)
@@ -45,7 +39,8 @@ def _group(parts):
 
 
 def _grains_so_far(tables):
-    """The tables read with the present mapping; empty if that is not possible yet."""
+    """The grains in frames of the plate, read with the present mapping; empty if that is not possible yet."""
+    guess_frames(tables)
     of_grains, problems = of_role(tables, "grains"), Problems()
     grains = import_grains(of_grains, problems)
     if problems.count or not grains.keys:
@@ -65,25 +60,25 @@ def guess_tables(files, known):
     guess_grains_upwards(tables)
     for table in of_role(tables, "grains"):
         guess_grain_lengths(table, known)
-    guess_frames(tables)
     grains = _grains_so_far(tables)
     open_ = [table for table in of_role(tables, "unused") if table.map.role_certainty == UNCLEAR]
     for table in open_:
         guess_contacts_by_values(table, grains)
-    has_plate = bool(of_role(tables, "plate"))
+    for table in [] if of_role(tables, "plate") else of_role(open_, "unused"):
+        guess_plate_by_values(table)
     for table in open_:
-        if table.role == "unused" and not has_plate:
-            guess_plate_by_values(table)
         note_units(table.map)
-    guess_frames(tables)
-    grains = grains if has_plate else _grains_so_far(tables)
-    voxel_sizes = [table.map.number("voxel_size") for table in of_role(tables, "grains") if table.map.word("length_unit") == VOXEL]
-    voxel_size = known.voxel_size if known.voxel_size > 0 else voxel_sizes[0] if voxel_sizes else np.nan
+    grains = _grains_so_far(tables)
+    voxel_size = next((table.map["voxel_size"] for table in of_role(tables, "grains") if "voxel_size" in table.map), None)
+    if voxel_size:
+        known = replace(known, voxel_size=float(voxel_size.word))
     for table in of_role(tables, "contacts"):
-        guess_contact_meaning(table, grains, known, voxel_size)
+        guess_contact_meaning(table, grains, known)
     for table in of_role(tables, "plate"):
-        guess_plate_units(table, tables, grains, known, voxel_size)
+        guess_plate_units(table, tables, grains, known)
     for table in tables:
+        if voxel_size and "voxel_size" in table.map:
+            table.map["voxel_size"] = voxel_size
         table.map.unused = unused_columns(table.map, table.parts[0].columns)
     return tables
 
@@ -100,68 +95,60 @@ def mapping_of(tables):
 
 def wrong_rows(tables):
     """Problems in the tables of plate and grains that prevent further guesses, if their columns are known."""
-    lines = []
+    problems = []
     for table in tables:
-        columns_known = all(of.certainty != UNCLEAR or "_" in key for key, of in table.map.entries.items())
-        if not columns_known or table.map.role_certainty == UNCLEAR:
+        certainties = [of.certainty for key, of in table.map.entries.items() if "_" not in key]
+        if UNCLEAR in (table.map.role_certainty, *certainties):
             continue
-        problems = Problems()
+        of_table = Problems()
         if table.role == "plate":
-            import_plate(table, np.nan, problems)
-        if table.role == "grains":
-            import_grains([table], problems)
-        lines += problems.lines()
-    return lines
-
-
-def _columns_in(mapped, part):
-    """Number of columns that the mapping names in this table, if the file has all of them; -1 if it lacks one."""
-    words = [word for _, words in columns_of(mapped) for word in words]
-    return len(words) if all(part.find(signed_column(word)[1]) is not None for word in words) else -1
+            import_plate(table, np.nan, of_table)
+        elif table.role == "grains":
+            import_grains([table], of_table)
+        problems += of_table.lines()
+    return problems
 
 
 def _distribute(files, tables, problems):
-    """Assigns each file to the best matching table; a tie is a problem."""
+    """Assigns each file to the table with most columns, all of which the file has; a tie is a problem."""
     for file in files:
-        best, most, why = None, 0, f"{file}: must have the columns of a table of the mapping, got others"
+        fits, why = {}, f"{file}: must have the columns of a table of the mapping, got others"
         for table in tables:
-            if table.role == "unused":
-                continue
+            words = [word for _, words in columns_of(table.map) for word in words]
             try:
                 part = read_table(file, table.map.form)
             except InputError as error:
-                why = why if best else str(error)
-                continue
-            columns = _columns_in(table.map, part)
-            if columns == most and best:
-                why, best = f"{file}: must fit one table of the mapping, got two that it fits: name the files in the mapping", None
-            elif columns > most:
-                best, most = (table, part), columns
-        if best:
-            best[0].parts.append(best[1])
-            best[0].map.files.append(file)
+                why = str(error)
+            else:
+                if all(part.find(signed_column(word)[1]) is not None for word in words):
+                    fits.setdefault(len(words), []).append((table, part))
+        best = fits[max(fits)] if fits else []
+        if len(best) == 1:
+            [(table, part)] = best
+            table.parts.append(part)
+            table.map.files.append(file)
         else:
-            problems.append(why)
+            problems.append(f"{file}: must fit one table of the mapping, got two that it fits: name the files in the mapping" if best else why)
 
 
 def read_import_tables(mapping, files=(), file="mapping"):
     """Reads the files of the tables in a mapping. `files`, if given, replace those of the mapping: each is assigned to the
     table whose columns it has."""
-    tables, problems = [], []
-    for mapped in mapping:
-        tables.append(ImportTable(mapped.changed(), []))
+    tables, problems = [ImportTable(mapped.changed(), []) for mapped in mapping], []
+    if files:
+        tables = [table for table in tables if table.role != "unused"]
+        before = [table.map.files[0] for table in tables]
+        for table in tables:
+            table.map.files = []
+        _distribute(files, tables, problems)
+        problems = problems or [f"{file}:{table.map.line}: the table of {table.role}, {first} there, must have a file too, got none among those "
+                                "given: give it, or remove the table from the mapping" for table, first in zip(tables, before) if not table.parts]
+    for table in tables:
         try:
-            tables[-1].parts = read_tables([] if files or mapped.role == "unused" else mapped.files, mapped.form)
+            if not files and table.role != "unused":
+                table.parts = read_tables(table.map.files, table.map.form)
         except InputError as error:
             problems += error.problems
-        tables[-1].map.files = [] if files else mapped.files
-    if files:
-        _distribute(files, tables, problems)
-        for table, mapped in zip(tables, mapping):
-            if not problems and table.role != "unused" and not table.map.files:
-                problems.append(f"{file}:{mapped.line}: the table of {mapped.role}, {mapped.files[0]} there, must have a file too, got none "
-                                "among those given: give it, or remove the table from the mapping")
-        tables = [table for table in tables if table.map.files]
     if problems:
         raise InputError(problems)
     return tables

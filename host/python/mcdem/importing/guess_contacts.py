@@ -2,16 +2,25 @@
 import numpy as np
 
 from .contacts import import_contacts
-from .guess_lengths import fitting_units, length_factors, state_voxel_size
+from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
 from .guess_walls import guess_walls, set_walls, unknown_partners
 from .mapping import UNCLEAR, guess, negated
-from .names import FORCES, VOXEL
+from .names import FORCES
 from .problems import Problems
 
 MAX_ROWS = 200_000  # maximum number of rows used for a guess
 NEAR = 1.2  # of the sum of radii: touching, including measurement errors
-LIKE_NEWTONS = ("gf", "kgf")  # with a modulus wrong by a factor of three
+ROUGH = 3.1  # factor by which Hertz's forces may be wrong; gf and kgf are then confused with mN and N
 FORCE_FACTORS = {unit: FORCES[unit] for unit in "N mN uN kN gf kgf".split()}  # the others are too similar to these
+
+
+def decide_force_unit(mapped, ratio, off, seen, unknown):
+    """The unit by the `ratio` of the raw numbers to forces [N] that may be `off` by a factor; NaN for the reason `unknown`."""
+    named = mapped.word("force_unit")
+    fits = fitting_units({named: FORCES[named]} if named else FORCE_FACTORS, ratio, 1, 1 / off, off)
+    confused = off >= ROUGH and {"gf", "kgf"} & set(fits)
+    seen = f"as newtons {seen}" if np.isfinite(ratio) else ""
+    decide_unit(mapped, "force_unit", fits, seen, ("N", seen or unknown), UNCLEAR if confused else "sure")
 
 
 def hertz_force(known, radius, other, overlap):
@@ -21,38 +30,38 @@ def hertz_force(known, radius, other, overlap):
 
 
 class _Places:
-    """The contacts in frames with known positions of the grains."""
+    """The contacts in frames with known positions of the grains; their raw numbers taken as m and N."""
 
     def __init__(self, table, grains):
-        frames = import_contacts(table, grains, Problems(), MAX_ROWS)
-        self.all = frames
+        plain = table.changed(length_unit=guess("m", "stated", ""), force_unit=guess("N", "stated", ""))
+        self.all = frames = import_contacts(plain, grains, Problems(), MAX_ROWS)
         at = grains.frames_of(table.map.word("frames_by", "plate"), frames.keys)[frames.frame]
         kept = np.flatnonzero(at >= 0)
-        position, radius = np.array(grains.position), grains.diameter / 2
-        self.force, self.point, self.partner = frames.force[kept], frames.point[kept], frames.partner[kept]
-        self.centre, self.radius = position[at[kept], frames.grain[kept]], radius[frames.grain[kept]]
-        self.pair = self.partner >= 0
-        other = np.maximum(self.partner, 0)
-        self.line, self.other_radius = self.centre - position[at[kept], other], radius[other]
+        at, grain, partner = at[kept], frames.grain[kept], frames.partner[kept]
+        position, radius, other = np.array(grains.position), grains.diameter / 2, np.maximum(partner, 0)
+        self.force, self.point, self.pair = frames.force[kept], frames.point[kept], partner >= 0
+        self.centre, self.radius, self.other_radius = position[at, grain], radius[grain], radius[other]
+        self.line = self.centre - position[at, other]
+        self.distance, self.reach = np.linalg.norm(self.line, axis=1), self.radius + self.other_radius
 
     def touching(self):
         """Fraction of touching pairs, 0 without pairs."""
-        distance = np.linalg.norm(self.line, axis=1)[self.pair]
-        return float(np.mean(distance < NEAR * (self.radius + self.other_radius)[self.pair])) if len(distance) else 0.0
+        return float(np.mean((self.distance < NEAR * self.reach)[self.pair])) if self.pair.any() else 0.0
 
-    def outward(self, box):
-        """+1 if forces repel grains as given, -1 if they do after reversal: from pairs, otherwise from nearby walls."""
+    def outward(self, box, axes=(1, 1, 1)):
+        """+1 if forces repel grains as given, -1 if they do after reversal: from pairs, otherwise from nearby walls. `axes` are
+        signs for the forces."""
+        force = self.force * axes
         with np.errstate(invalid="ignore", divide="ignore"):
-            cosine = np.sum(self.force * self.line, axis=1) / (np.linalg.norm(self.force, axis=1) * np.linalg.norm(self.line, axis=1))
+            cosine = np.sum(force * self.line, axis=1) / (np.linalg.norm(force, axis=1) * self.distance)
         cosine = cosine[self.pair & np.isfinite(cosine)]
         if len(cosine) >= 3:
             return float(cosine.mean())
-        axis = np.argmax(np.abs(self.force), axis=1)
+        axis = np.argmax(np.abs(force), axis=1)
         sides = np.flatnonzero(~self.pair & (axis < 2))  # the position of the plate is unknown here
-        if not len(sides):
-            return 0.0
-        low = self.centre[sides, axis[sides]] < np.asarray(box)[axis[sides]] / 2
-        return float(np.mean(np.where(low == (self.force[sides, axis[sides]] > 0), 1, -1)))
+        axis = axis[sides]
+        low = self.centre[sides, axis] < np.array(box)[axis] / 2
+        return float(np.mean(np.where(low == (force[sides, axis] > 0), 1, -1))) if len(sides) else 0.0
 
 
 def _guess_offset(table, grains):
@@ -67,115 +76,83 @@ def _guess_offset(table, grains):
         share = _Places(trial, grains).touching()
         if share > most + 0.05:
             most, best = share, offset
-    certainty = "sure" if most > 0.9 else UNCLEAR if most > 0 else "likely"
-    why = f"{100 * most:.0f} % of the pairs touch then" if most > 0 else "no pairs to tell it by"
-    table.map["id_offset"] = guess(str(best), certainty, why + (": numbers of grains, frames or columns may be others" if certainty == UNCLEAR else ""))
+    share = f"{100 * most:.0f} % of the pairs touch then"
+    unclear = f"{share}: numbers of grains, frames or columns may be others"
+    told = ("sure", share) if most > 0.9 else (UNCLEAR, unclear) if most > 0 else ("likely", "no pairs to tell it by")
+    table.map["id_offset"] = guess(str(best), *told)
     set_walls(table.map, unknown_partners(table, grains, best), grains)
     if len(table.map.walls) > 6:
         table.map["partner"] = guess(table.map.word("partner"), UNCLEAR, "more than six of its numbers are no grains")
 
 
-def _guess_force_upwards(table, grains, box):
-    """Guesses the sign of fz: forces must be along the lines of centres."""
-    fz = table.map["fz"]
-    as_it_is, other_way = (abs(_Places(trial, grains).outward(box)) for trial in (table, table.changed(fz=negated(fz))))
-    if abs(as_it_is - other_way) < 0.2:
-        if grains.sign[2] < 0:
-            table.map["fz"] = negated(fz)
-            table.map["fz"].certainty, table.map["fz"].why = UNCLEAR, "z of the grains is downwards: are the forces too? If not, remove the -"
-    elif other_way > as_it_is:
-        table.map["fz"] = negated(fz)
-        table.map["fz"].certainty = UNCLEAR if fz.certainty == UNCLEAR else "sure"
-        table.map["fz"].why += (f"; the other way, for so forces lie along the lines of centres (mean cosine {other_way:.2f}, else "
-                                f"{as_it_is:.2f})")
-
-
-def _guess_force_on(table, grains, box):
-    if not all(key in table.map for key in ("fx", "fy", "fz")):
-        return
-    _guess_force_upwards(table, grains, box)
-    sign = _Places(table, grains).outward(box)
-    clear = abs(sign) > 0.5
-    table.map["force_on"] = guess("partner" if sign < 0 else "grain", "sure" if clear else UNCLEAR,
-                                  "so forces push grains apart" if clear else "forces neither push grains apart nor together")
-
-
-def _guess_sides(table, frames):
-    pairs = np.flatnonzero(frames.partner >= 0)
-    listed = list(zip(frames.frame[pairs], frames.grain[pairs], frames.partner[pairs]))
-    seen, twice = set(), 0
-    for frame, grain, partner in listed:
-        twice += (frame, partner, grain) in seen
-        seen.add((frame, grain, partner))
-    table.map["sides"] = guess("both" if 2 * twice > 0.5 * len(listed) else "one", "sure" if twice == 0 or 2 * twice == len(listed) else "likely",
-                               f"{2 * twice} of {len(listed)} pairs are there from either side")
-
-
-def _point_units(table, grains, voxel_size):
-    """Units in which contact points are on the surfaces of their grains."""
-    fits = []
-    for unit in length_factors(voxel_size):
-        size = {"voxel_size": guess(repr(float(voxel_size)), "stated", "")} if unit == VOXEL else {}
-        places = _Places(table.changed(length_unit=guess(unit, "stated", ""), **size), grains)
-        ratio = np.linalg.norm(places.point - places.centre, axis=1) / places.radius
-        if len(ratio) and 0.6 < np.median(ratio) < 1.3:
-            fits.append(unit)
-    return fits
-
-
-def _guess_point_unit(table, grains, known, voxel_size):
-    """Unit and direction of contact points: z may have the opposite sign of the present guess."""
+def _guess_force_on(table, places, grains, box):
+    """Guesses the sign of fz, for forces must be along the lines of centres, and the grain on which forces are."""
     mapped = table.map
-    if "x" not in mapped or "z" not in mapped:
+    if not all(key in mapped for key in ("fx", "fy", "fz")):
         return
-    named, fits = mapped.get("length_unit"), _point_units(table, grains, voxel_size)
-    if not fits:
-        other = negated(mapped["z"])
-        fits = _point_units(table.changed(z=other), grains, voxel_size)
-        if fits:
-            mapped["z"] = other
-            other.why += "; the other way, for so the points lie on the grains' surfaces"
-    one = len(fits) == 1
-    if named and (not one or fits[0] == named.word):
-        named.why += ", and the points lie on the grains' surfaces" if one else ""
-    else:
-        word = fits[0] if one and not named else named.word if named else "m"
-        mapped["length_unit"] = guess(word, "sure" if one and not named else UNCLEAR, f"in {fits[0]} the points lie on the grains' surfaces"
-                                      if one else "in no unit, or in several, do the points lie on the grains' surfaces")
-    if voxel_size > 0 and mapped.word("length_unit") == VOXEL and not known.voxel_size > 0:
-        mapped["voxel_size"] = guess(repr(float(voxel_size)), "sure", "that of the grains")
-    else:
-        state_voxel_size(mapped, known)
+    fz, sign, other = mapped["fz"], places.outward(box), places.outward(box, (1, 1, -1))
+    unknown = abs(abs(sign) - abs(other)) < 0.2
+    if grains.sign[2] < 0 if unknown else abs(other) > abs(sign):
+        mapped["fz"], sign = negated(fz), other
+        mapped["fz"].certainty = UNCLEAR if unknown or fz.certainty == UNCLEAR else "sure"
+        mapped["fz"].why = "z of the grains is downwards: are the forces too? If not, remove the -" if unknown else (
+            f"{fz.why}; the other way, for so forces lie along the lines of centres (mean cosine {abs(other):.2f})")
+    clear = abs(sign) > 0.5
+    mapped["force_on"] = guess("partner" if sign < 0 else "grain", "sure" if clear else UNCLEAR,
+                               "so forces push grains apart" if clear else "forces neither push grains apart nor together")
 
 
-def _guess_force_unit(table, grains, known):
+def _guess_sides(mapped, frames):
+    pairs = np.column_stack([frames.frame, frames.grain, frames.partner])[frames.partner >= 0]
+    listed = set(map(tuple, pairs.tolist()))
+    twice = sum((frame, partner, grain) in listed for frame, grain, partner in listed)
+    mapped["sides"] = guess("both" if twice > 0.5 * len(listed) else "one", "sure" if twice in (0, len(listed)) else "likely",
+                            f"{twice} of {len(listed)} pairs are there from either side")
+
+
+def _guess_point_unit(mapped, places, grains, known):
+    """Unit and direction of contact points, which are on the surfaces of their grains: z may have the opposite sign of the
+    present guess."""
+    if "x" not in mapped:
+        return
+    factors = length_factors(known.voxel_size) if len(places.point) else {}
+    for axes in ((1, 1, 1), (1, 1, -1)):
+        points = (places.point + grains.origin) * axes
+        off = {unit: np.linalg.norm(points * factor - grains.origin - places.centre, axis=1) for unit, factor in factors.items()}
+        if fits := [unit for unit, distance in off.items() if 0.6 < np.median(distance / places.radius) < 1.3]:
+            break
+    if fits and axes[2] < 0:
+        mapped["z"] = negated(mapped["z"])
+        mapped["z"].why += "; the other way, for so the points lie on the grains' surfaces"
+    if "length_unit" not in mapped or len(fits) == 1:
+        decide_unit(mapped, "length_unit", fits, f"in {' '.join(fits)} the points lie on the grains' surfaces",
+                    ("m", "in no unit, or in several, do the points lie on the grains' surfaces"))
+    state_voxel_size(mapped, known)
+
+
+def _guess_force_unit(table, places, grains, known):
     mapped = table.map
     if "force_unit" in mapped:
         return
-    places = _Places(table.changed(force_unit=guess("N", "stated", "")), grains)
-    overlap = places.radius + places.other_radius - np.linalg.norm(places.line, axis=1)
-    deep = places.pair & (overlap > 0.01 * (places.radius + places.other_radius))
+    overlap = places.reach - places.distance
+    deep = places.pair & (overlap > 0.01 * places.reach)
     ratios = np.linalg.norm(places.force, axis=1)[deep] / hertz_force(known, places.radius[deep], places.other_radius[deep], overlap[deep])
     ratio = float(np.median(ratios)) if len(ratios) >= 5 else np.nan
-    fits = fitting_units(FORCE_FACTORS, ratio, 1, 1 / 3.1, 3.1)
-    if len(fits) == 1:
-        mapped["force_unit"] = guess(fits[0], UNCLEAR if fits[0] in LIKE_NEWTONS else "sure",
-                                     f"then forces are {ratio * FORCES[fits[0]]:.2g} times Hertz's from the overlaps")
-    elif table.parts[0].format != "text" and grains.diameter[0] < 1:
+    decide_force_unit(mapped, ratio, ROUGH, f"forces would be {ratio:.2g} times Hertz's from the overlaps",
+                      "no name says it; with --set grains.youngs_modulus=.. the overlaps may")
+    unit = mapped["force_unit"]
+    if unit.word == "N" and unit.certainty == UNCLEAR and table.parts[0].format != "text" and grains.diameter[0] < 1:
         mapped["force_unit"] = guess("N", "likely", "the grains are in metres, so the program counts in SI")
-    else:
-        mapped["force_unit"] = guess("N", UNCLEAR, f"as newtons forces would be {ratio:.2g} times Hertz's" if np.isfinite(ratio)
-                                     else "no name says it; with --set grains.youngs_modulus=.. the overlaps may")
 
 
-def guess_contact_meaning(table, grains, known, voxel_size):
+def guess_contact_meaning(table, grains, known):
     if not grains.keys:
         table.map["id_offset"] = guess("0", UNCLEAR, "the grains' table cannot be read so far")
         return
     _guess_offset(table, grains)
-    _guess_force_on(table, grains, known.box)
-    frames = _Places(table, grains).all
-    guess_walls(table, frames, grains, known)
-    _guess_sides(table, frames)
-    _guess_point_unit(table, grains, known, voxel_size)
-    _guess_force_unit(table, grains, known)
+    _guess_force_on(table, _Places(table, grains), grains, known.box)
+    places = _Places(table, grains)
+    guess_walls(table, places.all, grains, known)
+    _guess_sides(table.map, places.all)
+    _guess_point_unit(table.map, places, grains, known)
+    _guess_force_unit(table, places, grains, known)

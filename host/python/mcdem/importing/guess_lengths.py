@@ -2,15 +2,22 @@
 import numpy as np
 
 from .assemble import import_grains
-from .guess_names import is_trackpy
+from .guess_names import program_of
 from .mapping import SIZE_KEYS, UNCLEAR, guess
-from .names import LENGTHS, VOXEL, column_name, DOWNWARDS, is_among
+from .names import LENGTHS, DOWNWARDS, VOXEL, column_name
 from .problems import Problems, number_text
 from .rows import of_role
+
 
 def plain_grains(table):
     """The grains with their raw numbers taken as metres."""
     return import_grains([table.changed(length_unit=guess("m", "stated", ""))], Problems())
+
+
+def _reach(grains):
+    """The lowest and the highest coordinates in each complete frame [frames][2][3]."""
+    radius = grains.diameter[:, None] / 2
+    return np.array([[(at - radius).min(axis=0), (at + radius).max(axis=0)] for at in grains.position if len(at) == len(radius)])
 
 
 def fitting_units(factors, value, scale, low, high):
@@ -21,6 +28,22 @@ def fitting_units(factors, value, scale, low, high):
 
 def length_factors(voxel_size):
     return {**LENGTHS, **({VOXEL: voxel_size} if np.isfinite(voxel_size) and voxel_size > 0 else {})}
+
+
+def decide_unit(mapped, key, fits, seen, otherwise, certainty="sure"):
+    """States the unit that a name tells, or the only one that `fits` the numbers `seen`; `otherwise` a word and the reason why
+    it is unclear."""
+    named = mapped.get(key)
+    if named and named.certainty == UNCLEAR:
+        return
+    if named and named.word in fits:
+        mapped[key] = guess(named.word, "sure", f"{named.why}, and {seen}")
+    elif named:
+        mapped[key] = guess(named.word, UNCLEAR, f"{named.why}, but {seen}")
+    elif len(fits) == 1:
+        mapped[key] = guess(fits[0], certainty, seen)
+    else:
+        mapped[key] = guess(otherwise[0], UNCLEAR, otherwise[1])
 
 
 def nearest_over_radii(position, diameter):
@@ -37,52 +60,36 @@ def nearest_over_radii(position, diameter):
     return float(np.median(ratio.min(axis=1)))
 
 
-def _guess_same_diameter(table):
-    """A suggestion if there is no column for the size."""
-    mapped = table.map
-    if any(key in mapped for key in (*SIZE_KEYS, "same_diameter")) or not all(axis in mapped for axis in "xyz"):
-        return
-    grains = plain_grains(table.changed(same_diameter=guess("1", "stated", "")))
-    if grains.keys:
-        distance = nearest_over_radii(grains.position[0], grains.diameter)
-        why = "trackpy's size is the radius of gyration of the brightness, not a radius" if is_trackpy(table.parts[0].columns) \
+def _guess_size(table):
+    """Distinguishes radii and diameters: with the wrong one, distances between neighbours are wrong by a factor of two. Proposes
+    a diameter if there is no column for the size."""
+    mapped, key = table.map, next((key for key in SIZE_KEYS if key in table.map), None)
+    grains = plain_grains(table if key else table.changed(same_diameter=guess("1", "stated", "")))
+    ratio = nearest_over_radii(grains.position[0], grains.diameter) if grains.keys else np.nan
+    low, high, other = {"radius": (0.35, 0.6, "diameter"), "diameter": (1.65, 2.6, "radius")}.get(key, (0, 0, ""))
+    if not key:
+        why = "trackpy's size is the radius of gyration of the brightness, not a radius" if program_of(table.parts[0].columns) == "trackpy" \
             else "no column has a size"
-        mapped["same_diameter"] = guess(f"{distance:.4g}" if distance > 0 else "1", UNCLEAR, why + "; the nearest neighbours are so far apart: "
-                                        "are all grains of one size? If not, add a column with diameters or radii to the table")
+        mapped["same_diameter"] = guess(f"{ratio:.4g}" if ratio > 0 else "1", UNCLEAR, why + "; the nearest neighbours are so far apart: are all "
+                                        "grains of one size? If not, add a column with diameters or radii to the table")
+    elif low < ratio < high:
+        mapped[key] = guess(mapped.word(key), UNCLEAR, f"but then the nearest neighbours are {ratio:.2f} times the sum of their radii apart: is it "
+                            f"the {other}? Then write {other} in place of {key}")
+    elif 0.75 < ratio < 1.25 and mapped[key].certainty != UNCLEAR:
+        mapped[key].why += f"; neighbours touch ({ratio:.2f} of the sum of radii)"
 
 
-def _check_size(mapped, grains):
-    """Distinguishes radii and diameters: with the wrong one, distances between neighbours are wrong by a factor of two."""
-    now, other = ("radius", "diameter") if "radius" in mapped else ("diameter", "radius")
-    if now not in mapped:
-        return
-    ratio = nearest_over_radii(grains.position[0], grains.diameter)
-    if (0.35 < ratio < 0.6) if now == "radius" else (1.65 < ratio < 2.6):
-        mapped[now].certainty = UNCLEAR
-        mapped[now].why = (f"but then the nearest neighbours are {ratio:.2f} times the sum of their radii apart: is it the {other}? "
-                           f"Then write {other} in place of {now}")
-    elif 0.75 < ratio < 1.25 and mapped[now].certainty != UNCLEAR:
-        mapped[now].why += f"; neighbours touch ({ratio:.2f} of the sum of radii)"
-
-
-def _unit_by_box(mapped, width, depth, known):
-    (box_x, box_y), named = known.box, mapped.get("length_unit")
-    factors = length_factors(known.voxel_size)
-    fits = [unit for unit in fitting_units(factors, width, box_x, 0.55, 1.15) if 0.55 < depth * factors[unit] / box_y < 1.15] \
-        if box_x > 0 else []
-    spans = f"the packing is {width:.4g} by {depth:.4g} wide, the box {box_x:g} by {box_y:g} m"
+def _guess_unit_by_box(mapped, width, depth, known):
+    (box_x, box_y), factors = known.box, length_factors(known.voxel_size)
     likely = "mm" if width > 0.5 else "m"
-    if named:
-        if named.certainty == UNCLEAR or box_x <= 0 or named.word not in factors:
-            return named
-        if named.word in fits:
-            return guess(named.word, "sure", "named so, and the packing fills the box")
-        return guess(named.word, UNCLEAR, f"{'the columns say so' if named.why == '' else named.why}, but {spans}")
-    if len(fits) == 1:
-        return guess(fits[0], "sure", spans)
     if box_x <= 0:
-        return guess(likely, UNCLEAR, "no name says it, and the box is not known: --set box.size=[..] would tell")
-    return guess(likely, UNCLEAR, ("several units make" if fits else "no unit makes") + f" the packing fit the box: {spans}")
+        unknown = guess(likely, UNCLEAR, "no name says it, and the box is not known: --set box.size=[..] would tell")
+        mapped.entries.setdefault("length_unit", unknown)
+    elif mapped.word("length_unit", "m") in factors:
+        fits = [unit for unit in fitting_units(factors, width, box_x, 0.55, 1.15) if 0.55 < depth * factors[unit] / box_y < 1.15]
+        spans = f"the packing is {width:.4g} by {depth:.4g} wide, the box {box_x:g} by {box_y:g} m"
+        number = "several units make" if fits else "no unit makes"
+        decide_unit(mapped, "length_unit", fits, spans, (likely, f"{number} the packing fit the box: {spans}"))
 
 
 def state_voxel_size(mapped, known, width=0):
@@ -98,86 +105,69 @@ def state_voxel_size(mapped, known, width=0):
 
 
 def _guess_origin(mapped, low, high, grains, box):
-    if box[0] <= 0:
-        return
     unit, margin = mapped.length_factor(), 0.12 * grains.diameter[0]  # soft grains overlap walls
-    for axis, key in enumerate(("origin_x", "origin_y", "origin_z")):
-        size = box[axis] / unit if axis < 2 else np.inf
-        reach = f"grains reach from {low[axis]:.4g} to {high[axis]:.4g}"
-        if low[axis] >= -margin and high[axis] <= size + margin:
-            mapped[key] = guess("0", UNCLEAR if axis == 2 and low[axis] > 5 * margin else "sure", reach)
-            continue
-        place = (low[axis] + high[axis] - size) / 2 if axis < 2 else low[axis]
-        place = -size / 2 if axis < 2 and abs(place + size / 2) < margin else place
-        mapped[key] = guess(f"{grains.sign[axis] * place:.6g}", UNCLEAR,
-                            reach + (f", the box is {size:.4g} wide" if axis < 2 else ", and the floor is not at 0"))
+    for axis, size in enumerate([*np.divide(box, unit), np.inf] if box[0] > 0 else ()):
+        begin, end = low[axis], high[axis]
+        word, certainty, why = 0, UNCLEAR, f"grains reach from {begin:.4g} to {end:.4g}"
+        if begin >= -margin and end <= size + margin:
+            certainty = UNCLEAR if axis == 2 and begin > 5 * margin else "sure"
+        elif axis == 2:
+            word, why = begin, f"{why}, and the floor is not at 0"
+        else:
+            middle = (begin + end) / 2
+            word, why = (0 if abs(middle) < margin else middle) - size / 2, f"{why}, the box is {size:.4g} wide"
+        mapped["origin_" + "xyz"[axis]] = guess(f"{grains.sign[axis] * word + 0:.6g}", certainty, why)
 
 
 def guess_grain_lengths(table, known):
     mapped, grains = table.map, plain_grains(table)
-    if not grains.keys or not len(grains.diameter) or len(grains.position[0]) != len(grains.diameter):
+    if not grains.keys:
         return
-    _check_size(mapped, grains)
-    low = (grains.position[0] - grains.diameter[:, None] / 2).min(axis=0)
-    high = (grains.position[0] + grains.diameter[:, None] / 2).max(axis=0)
-    width, depth = (high - low)[:2]
-    mapped["length_unit"] = _unit_by_box(mapped, width, depth, known)
-    state_voxel_size(mapped, known, width)
+    low, high = _reach(grains)[0]
+    _guess_unit_by_box(mapped, *(high - low)[:2], known)
+    state_voxel_size(mapped, known, (high - low)[0])
     _guess_origin(mapped, low, high, grains, known.box)
 
 
-def _end_that_gives(ends, diameter):
+def _end_that_moves(ends, diameter):
     """The end that moves towards the other one between the highest and the lowest frame; it is the one with the plate."""
     heights = ends[:, 1] - ends[:, 0]
-    lowest, highest = ends[np.argmin(heights)], ends[np.argmax(heights)]
-    shrink = heights.max() - heights.min()
+    shrink = np.ptp(heights)
     if not shrink > 0.1 * diameter:  # smaller changes may be noise
         return "none"
-    at_low = (lowest[0] - highest[0]) / shrink
-    return "low" if at_low > 0.8 else "high" if at_low < 0.2 else "both"
+    at_low = (ends[np.argmin(heights), 0] - ends[np.argmax(heights), 0]) / shrink
+    return "lower" if at_low > 0.8 else "upper" if at_low < 0.2 else "both"
 
 
-def _upwards(column, now, ends, diameter):
-    """Guesses the direction of z, not reversed so far, from the ends of the packing and the column's name."""
-    gives, margin, (low, high) = _end_that_gives(ends, diameter), 0.12 * diameter, ends[0]
-    negated, reach = "-" + column, f"grains reach from {low:.4g} to {high:.4g}"
-    if is_among(column_name(column).base, DOWNWARDS):
-        if gives in ("high", "both"):
-            return guess(negated, UNCLEAR, "its name says downwards, but the packing moves at its upper end: remove the - if z is upwards")
-        return guess(negated, "sure", "its name says downwards")
-    if gives == "low" and abs(high) < margin:
-        return guess(negated, "sure", reach + ", and the packing moves at its lower end: z is downwards")
-    if gives == "low":
-        return guess(negated, UNCLEAR, reach + ", and the packing moves at its lower end: is z downwards? If not, remove the -")
-    if gives == "both":
-        return guess(now.word, UNCLEAR, "the packing moves at both ends: is z upwards, and does the floor stand still?")
-    if gives == "none" and high < margin and low < -margin:
-        return guess(negated, UNCLEAR, reach + ": is z downwards? If not, remove the -")
-    if gives == "high" and now.certainty != UNCLEAR:
-        now.why += "; upwards, because the packing moves at its upper end"
-    return now
+def _upwards(now, ends, diameter):
+    """The entry for z, not reversed so far, with its direction from the ends of the packing and the column's name."""
+    end, margin, (low, high) = _end_that_moves(ends, diameter), 0.12 * diameter, ends[0]
+    down, reach = "-" + now.word, f"grains reach from {low:.4g} to {high:.4g}"
+    named = column_name(now.word).base in DOWNWARDS.split()
+    rules = [  # the first one that applies is used
+        (named and end in ("upper", "both"), down, UNCLEAR,
+         "its name says downwards, but the packing moves at its upper end: remove the - if z is upwards"),
+        (named, down, "sure", "its name says downwards"),
+        (end == "lower" and abs(high) < margin, down, "sure", f"{reach}, and the packing moves at its lower end: z is downwards"),
+        (end == "lower", down, UNCLEAR, f"{reach}, and the packing moves at its lower end: is z downwards? If not, remove the -"),
+        (end == "both", now.word, UNCLEAR, "the packing moves at both ends: is z upwards, and does the floor stand still?"),
+        (end == "none" and high < margin and low < -margin, down, UNCLEAR, f"{reach}: is z downwards? If not, remove the -"),
+        (end == "upper", now.word, now.certainty, f"{now.why}; upwards, because the packing moves at its upper end"),
+        (True, now.word, now.certainty, now.why)]
+    return next(guess(*rule) for applies, *rule in rules if applies)
 
 
 def guess_grains_upwards(tables):
     """Reverses z if that is certain; marks it as unclear if it is possible."""
-    told = []  # and whether the frames decide
+    single = []  # z of the tables of one frame, which do not tell its direction
     for table in of_role(tables, "grains"):
-        if "z" not in table.map:
-            continue
-        _guess_same_diameter(table)
+        _guess_size(table)
         grains = plain_grains(table)
-        if not grains.keys or not len(grains.diameter):
-            continue
-        ends = []
-        for position in grains.position:
-            n = min(len(position), len(grains.diameter))
-            z, radius = position[:n, 2], grains.diameter[:n] / 2
-            ends.append([(z - radius).min(), (z + radius).max()])
-        z = table.map["z"]
-        if len(z.words) == 1:
-            table.map["z"] = _upwards(z.word, z, np.array(ends), float(np.median(grains.diameter)))
-        told.append((table.map, len(grains.keys) > 1))
-    if any(mapped.word("z").startswith("-") for mapped, _ in told):
-        for mapped, several in told:
-            if not several and not mapped.word("z").startswith("-"):
-                mapped["z"].certainty, mapped["z"].why = UNCLEAR, "it is downwards in another table: write a - before its name if it is here too"
+        if grains.keys and len(table.map["z"].words) == 1:
+            table.map["z"] = _upwards(table.map["z"], _reach(grains)[:, :, 2], float(np.median(grains.diameter)))
+        if len(grains.keys) == 1:
+            single.append(table.map["z"])
+    if any(table.map.word("z").startswith("-") for table in of_role(tables, "grains")):
+        for z in single:
+            if not z.word.startswith("-"):
+                z.certainty, z.why = UNCLEAR, "it is downwards in another table: write a - before its name if it is here too"

@@ -1,6 +1,6 @@
 """Meaning of column names: a quantity and possibly a unit, in the terms of laboratories and programs."""
 import re
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import pint
 
@@ -19,7 +19,9 @@ LENGTH_WORDS = [*LENGTHS, VOXEL]
 SYNONYMS = {"µm": "um", "μm": "um", "micron": "um", "µN": "uN", "μN": "uN", "g": "gf", "kg": "kgf", "gram": "gf", "newton": "N",
             "newtons": "N", "meter": "m", "voxels": VOXEL, "vox": VOXEL, "vx": VOXEL, "px": VOXEL, "pixel": VOXEL, "pixels": VOXEL}
 DOWNWARDS = "depth tiefe profondeur zdown zdownwards"  # names of a downward z
-_FRAME = ("frame", "frame scan image snapshot step timestep bild schritt state time t zeit temps iter")
+# Meanings of frame numbers.
+COUNTED = {"time": "time t zeit temps", "step": "step timestep schritt iter", "scan": "frame scan image snapshot bild state"}
+_FRAME = ("frame", " ".join(COUNTED.values()))
 
 # Keys of the mapping and their names without units and punctuation; the first match is used.
 WORDS = {
@@ -41,8 +43,7 @@ WORDS = {
         ("grain", "grain id particle label index korn teilchen nr no number atom particleid grainid bead beadid"),
         ("x", "x xc cx posx xpos centroidx xcentroid centerx xcenter xu px positionx centroid2 barycenterx centerofmassx"),
         ("y", "y yc cy posy ypos centroidy ycentroid centery ycenter yu py positiony centroid1 barycentery centerofmassy"),
-        ("z", "z zc cz posz zpos centroidz zcentroid centerz zcenter zu pz positionz centroid0 barycenterz centerofmassz"),
-        ("z", DOWNWARDS),
+        ("z", "z zc cz posz zpos centroidz zcentroid centerz zcenter zu pz positionz centroid0 barycenterz centerofmassz " + DOWNWARDS),
         ("diameter", "diameter d dia diam durchmesser diametre equivalentdiameterarea equivalentdiameter eqdiameter equivdiam equivalentsphericaldiameter"),
         ("radius", "radius r rad radii halbmesser rayon equivalentradius equivalentradii equivradius equivradii eqradius"),
         ("volume", "volume volume3d volumen vol"),
@@ -55,21 +56,17 @@ WORDS = {
                     "neighbour neighbor nachbar other contactwith label2 lab2 labelj"),
         ("x", "x xc cx px contactx xcontact cpx pointx xpos"),
         ("y", "y yc cy py contacty ycontact cpy pointy ypos"),
-        ("z", "z zc cz pz contactz zcontact cpz pointz zpos"),
-        ("z", DOWNWARDS),
+        ("z", "z zc cz pz contactz zcontact cpz pointz zpos " + DOWNWARDS),
         ("fx", "fx forcex xforce f1 kraftx ffx fcx"),
         ("fy", "fy forcey yforce f2 krafty ffy fcy"),
         ("fz", "fz forcez zforce f3 kraftz ffz fcz"),
         ("force", "force f forcemagnitude fn normalforce kraft fabs fmag forcenorm"),
     ],
 }
-# Meanings of frame numbers.
-COUNTED = {"time": "time t zeit temps", "step": "step timestep schritt iter", "scan": "frame scan image snapshot bild state"}
 _LETTERS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "Ä": "ae", "Ö": "oe", "Ü": "ue"})
 
 
-@dataclass
-class ColumnName:
+class ColumnName(NamedTuple):
     base: str = ""  # only lower-case letters and digits, without the unit: "toppressure"
     unit: str = ""  # of length, force or time; empty if there is none
     unknown: str = ""  # unknown unit in brackets
@@ -84,34 +81,22 @@ def _known_unit(word):
 
 def column_name(name):
     """"Kraft [mN]", "x_mm", "Volume (mm^3)" and "z in mm" name units, "c_force[1]" does not."""
-    name, all_of = name.strip(), ColumnName()
+    name, unit, unknown = name.strip(), "", ""
     brackets = re.fullmatch(r"(.+)[\[(]([^\[(]*)[\])]", name, re.DOTALL)
     if brackets and (_known_unit(brackets[2].strip()) or not re.search(r"\d", brackets[2])):
-        name, inside = brackets[1], brackets[2].strip()
-        all_of.unit = _known_unit(inside)
-        all_of.unknown = "" if all_of.unit else inside
+        name, unknown = brackets[1], brackets[2].strip()
+        unit = _known_unit(unknown)
     elif not brackets:
-        for mark in (" in ", "/", "_", " "):
-            before, found, behind = name.rpartition(mark)
-            if found and before and _known_unit(behind.strip()):
-                name, all_of.unit = before, _known_unit(behind.strip())
-                break
-    all_of.base = re.sub(r"[^a-z0-9]", "", name.translate(_LETTERS).lower())
-    return all_of
-
-
-def is_among(base, words):
-    return bool(base) and base in words.split()
-
-
-def key_of_name(role, name):
-    """The key of a column with this name in a table of that role, or None."""
-    return next((key for key, words in WORDS.get(role, []) if is_among(name.base, words)), None)
+        ends = (name.rpartition(mark) for mark in (" in ", "/", "_", " "))
+        name, unit = next(((before, known) for before, _, end in ends if before and (known := _known_unit(end.strip()))), (name, ""))
+    return ColumnName(re.sub(r"[^a-z0-9]", "", name.translate(_LETTERS).lower()), unit, "" if unit else unknown)
 
 
 def columns_by_key(role, columns):
+    """The columns that names tell for the keys of a table of that role."""
     found = {}
     for column in columns:
-        if key := key_of_name(role, column_name(column)):
+        base = column_name(column).base
+        for key in [key for key, words in WORDS[role] if base in words.split()][:1]:
             found.setdefault(key, []).append(column)
     return found
