@@ -62,7 +62,7 @@ def _read_columns(rows, mapped):
     """Number, centre and diameter in each row, and which rows are complete."""
     unit, size_key = mapped.length_factor(), next((key for key in SIZE_KEYS if key in rows), None)
     wanted = rows.wanted()
-    centres = np.column_stack([rows.number(key, wanted) for key in "xyz"])
+    centres = rows.numbers("xyz", wanted)
     sign = np.array([signed_column(mapped.word(key))[0] for key in "xyz"], float)
     begin = sign * [mapped.number(f"origin_{axis}") for axis in "xyz"]
     size = rows.number(size_key, wanted) if size_key else np.full(len(rows), mapped.number("same_diameter"))
@@ -81,7 +81,7 @@ class _Reader:
     def read(self, table):
         mapped, rows = table.map, Rows(table, self.problems)
         size = next((key for key in SIZE_KEYS if key in rows), "diameter")
-        if any(map(rows.lacks, ["x", "y", "z"] + ([] if "same_diameter" in mapped else [size]))):
+        if rows.lacks("x", "y", "z", *([] if "same_diameter" in mapped else [size])):
             return None
         first = whole_entry(mapped, "first_grain", self.problems)
         if not len(rows):

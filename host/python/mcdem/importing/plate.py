@@ -93,7 +93,7 @@ def import_plate(table, start, problems, programme=False):
     times."""
     mapped, rows = table.map, Rows(table, problems)
     goes_down = "displacement" in rows
-    if any(map(rows.lacks, ("top_force", "displacement" if goes_down else "plate_z", *(("time",) if programme else ())))):
+    if rows.lacks("top_force", "displacement" if goes_down else "plate_z", *["time"] * programme):
         return PlateRows()
     keys = rows.key if rows.keyed else np.arange(len(rows), dtype=float)
     place = rows.number("displacement" if goes_down else "plate_z")
