@@ -118,39 +118,29 @@ class _Assembly:
                                "partner": np.where(reversed_, frames.grain, frames.partner), "side": reversed_, "row": frames.row,
                                **dict(zip(("x", "y", "z", "fx", "fy", "fz"), np.hstack([frames.point, force]).T))})
         all_of = all_of[all_of.scan >= 0].reset_index(drop=True)
-        return self.put_points(self.joined(all_of, table.map.word("sides", "one") == "both", frames, before), frames)
+        return self.put_points(self.joined(all_of, table.map.word("sides", "one") == "both", frames.rows, before), frames)
 
-    def joined(self, contacts, both, frames, before):
-        """The mean of both sides if contacts are listed from both."""
-        pair = ["scan", "grain", "partner"]
-        place, size = contacts.groupby(pair).cumcount(), np.linalg.norm(contacts[["fx", "fy", "fz"]], axis=1)
-        first_side = contacts.groupby(pair).side.transform("first")
+    def joined(self, contacts, both, rows, before):
+        """The mean of both sides if contacts are listed from both. Weak forces may differ more, because their errors are those of
+        the strong ones."""
+        pair, forces = ["scan", "grain", "partner"], ["fx", "fy", "fz"]
+        of_pairs = contacts.groupby(pair, sort=False)
+        place, first = of_pairs.cumcount(), of_pairs.transform("first")
         in_others = pd.MultiIndex.from_frame(contacts[pair]).isin([key for table in before for key in zip(*table[pair].values.T)])
-        from_other_side = (place == 1) & (contacts.side != first_side) & ~in_others
-        twice = (place > 0) & ~(from_other_side & both) | in_others
-        for i in np.flatnonzero(twice)[:1]:
-            frames.rows.problem_once("twice", contacts.row[i], "each contact must be there once in a frame, got it " + (
+        other_side = (place == 1) & (contacts.side != first.side) & ~in_others
+        for i in np.flatnonzero((place > 0) & ~(other_side & both) | in_others)[:1]:
+            rows.problem_once("twice", contacts.row[i], "each contact must be there once in a frame, got it " + (
                 'from its other side too: write `sides = "both"` in the mapping where each is listed from either side'
-                if from_other_side[i] else "again in the same direction or in another table: make one row of rows of normal and tangential "
+                if other_side[i] else "again in the same direction or in another table: make one row of rows of normal and tangential "
                 "parts, and leave out what is there twice"))
-        kept = contacts[place == 0].set_index(pair)
-        if both and from_other_side.any():
-            other = contacts[from_other_side].set_index(pair)
-            largest = pd.Series(size).groupby(contacts.scan).max()
-            self.check_sides(kept.loc[other.index], other, largest.loc[other.index.get_level_values("scan")].values, frames)
-            values = ["x", "y", "z", "fx", "fy", "fz"]
-            kept.loc[other.index, values] = (kept.loc[other.index, values] + other[values]) / 2
-        return kept.reset_index()
-
-    @staticmethod
-    def check_sides(first, other, largest, frames):
-        """Weak forces may differ more, because their errors are those of the strong ones."""
-        a, b = first[["fx", "fy", "fz"]].values, other[["fx", "fy", "fz"]].values
-        sizes, apart = (np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)), np.linalg.norm(a - b, axis=1)
-        for i in np.flatnonzero(apart > np.maximum(MAX_APART * np.maximum(*sizes), WEAK * largest))[:1]:
-            frames.rows.problem_once("sides", other.row.iloc[i], f"the forces of a contact's two sides must be opposite, got sizes of "
-                                     f"{sizes[0][i]:.4g} and {sizes[1][i]:.4g} N, {apart[i]:.4g} N apart when one is negated: leave one "
-                                     'of the sides out of the table and write `sides = "one"`')
+        size, size_of_first, apart = (np.linalg.norm(force, axis=1) for force in (
+            contacts[forces], first[forces], contacts[forces] - first[forces]))
+        allowed = np.maximum(MAX_APART * np.maximum(size, size_of_first), WEAK * pd.Series(size).groupby(contacts.scan).transform("max"))
+        for i in np.flatnonzero(both & other_side & (apart > allowed))[:1]:
+            rows.problem_once("sides", contacts.row[i], "the forces of a contact's two sides must be opposite, got sizes of "
+                              f"{size_of_first[i]:.4g} and {size[i]:.4g} N, {apart[i]:.4g} N apart when one is negated: leave one "
+                              'of the sides out of the table and write `sides = "one"`')
+        return of_pairs.agg({"row": "first", **dict.fromkeys(["x", "y", "z", *forces], "mean")}).reset_index()
 
     def put_points(self, contacts, frames):
         """Contact points that were not measured: midway between the surfaces; on a wall, the foot of the perpendicular."""
@@ -165,10 +155,11 @@ class _Assembly:
         distance = np.linalg.norm(line, axis=1)
         with np.errstate(invalid="ignore", divide="ignore"):
             point = centre + ((radius[grain] + distance - radius[np.maximum(partner, 0)]) / (2 * distance))[:, None] * line
-        for wall in range(6):
+        top = self.plate.z[contacts.scan.values[lost]]
+        for wall, place in enumerate((0, self.known.box[0], 0, self.known.box[1], 0, top)):
             mine = partner == -1 - wall
             point[mine] = centre[mine]
-            point[mine, wall // 2] = (0, self.known.box[0], 0, self.known.box[1], 0, self.plate.z[contacts.scan.values[lost][mine]])[wall]
+            point[mine, wall // 2] = np.broadcast_to(place, len(lost))[mine]
         for i in lost[(frame < 0) | ~np.isfinite(point).all(axis=1)][:1]:
             frames.rows.problem_once("point", contacts.row[i], "a contact must have a point, or its grains a position in its "
                                      "frame, two places, got neither")
