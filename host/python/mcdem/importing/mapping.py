@@ -208,7 +208,7 @@ def _line_text(key, of, meaning):
     return text + "\n"
 
 
-def _meaning(key):
+def meaning_of(key):
     words = "one of " + ", ".join(key.words) if key.words else ""
     return words + ("; " if words and key.meaning else "") + key.meaning
 
@@ -225,7 +225,7 @@ def _table_text(table):
     if table.unused:
         text += f"# columns not used: {_one_line(', '.join(table.unused))}\n"
     for key in KEYS[table.role]:
-        text += _line_text(key.name, table[key.name], _meaning(key)) if key.name in table else f"# {key.name} =  # {_meaning(key)}\n"
+        text += _line_text(key.name, table[key.name], meaning_of(key)) if key.name in table else f"# {key.name} =  # {meaning_of(key)}\n"
     if table.walls:
         text += "[table.walls]  # what the table calls a wall, and which it is\n"
         for word, of in sorted(table.walls.items()):
