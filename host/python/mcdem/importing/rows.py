@@ -3,6 +3,7 @@ import os
 import re
 
 import numpy as np
+import pandas as pd
 
 from .mapping import columns_of, signed_column
 from .names import TIMES, column_name
@@ -166,32 +167,22 @@ class Rows:
 
 
 class FrameIndex:
-    """Finds frames. Times may differ by a thousandth of the shortest interval."""
+    """Finds frames by their keys, the first one of equal keys. Times may differ by a thousandth of the shortest interval."""
 
     def __init__(self, keys=()):
-        keys = np.asarray(keys, float)
-        self.order = np.argsort(keys, kind="stable")
-        self.sorted = keys[self.order]
-        steps = np.diff(self.sorted)
-        steps = steps[steps > 0]
-        self.tolerance = 1e-3 * steps.min() if len(steps) else 1e-9 * abs(self.sorted[0]) if len(keys) else 0.0
+        self.keys, self.first = np.unique(np.asarray(keys, float), return_index=True)
+        self.tolerance = 1e-3 * np.diff(self.keys).min() if len(self.keys) > 1 else 1e-9 * np.abs(self.keys).sum()
+
+    def _find(self, keys, tolerance):
+        return np.append(self.first, -1)[pd.Index(self.keys).get_indexer(np.asarray(keys, float), "nearest", tolerance=tolerance)]
 
     def nearest(self, keys):
         """Positions of the nearest ones; -1 if there would have been a nearer one before the first or after the last."""
-        keys = np.asarray(keys, float)
-        if len(self.sorted) < 2:
+        if len(self.keys) < 2:
             return self.find(keys)
-        right = np.clip(np.searchsorted(self.sorted, keys), 1, len(self.sorted) - 1)
-        is_left = keys - self.sorted[right - 1] <= self.sorted[right] - keys
-        first, last = self.sorted[[0, -1]] - np.diff(self.sorted)[[0, -1]] * [0.5, -0.5]
-        inside = (keys >= first) & (keys <= last)
-        return np.where(inside, self.order[np.where(is_left, right - 1, right)], -1)
+        first, last = self.keys[[0, -1]] - np.diff(self.keys)[[0, -1]] * [0.5, -0.5]
+        return np.where((keys >= first) & (keys <= last), self._find(keys, None), -1)
 
     def find(self, keys):
         """Positions; -1 if there is none."""
-        keys = np.asarray(keys, float)
-        if not len(self.sorted):
-            return np.full(keys.shape, -1)
-        at = np.minimum(np.searchsorted(self.sorted, keys - self.tolerance), len(self.sorted) - 1)
-        near = np.abs(self.sorted[at] - keys) <= self.tolerance * (1 + 1e-12)
-        return np.where(near, self.order[at], -1)
+        return self._find(keys, self.tolerance * (1 + 1e-12))
