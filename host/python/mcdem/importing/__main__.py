@@ -27,10 +27,16 @@ class Request:
         self.known = Known(**{name: value for name, value in stated["known"].items() if value is not None})
         self.gzip, self.settings_problems = stated["gzip"], stated["settings_problems"]
 
+    def write_mapping(self, text):
+        write_whole(os.path.join(self.work, "mapping.toml"), text.encode("utf-8", "surrogateescape"))
+
+    def write_result(self, **result):
+        write_whole(os.path.join(self.work, "result.json"), json.dumps(result, ensure_ascii=False).encode("utf-8", "replace"))
+
 
 def print_beside(head, text):
     print(textwrap.fill(text, LINE, initial_indent=head, subsequent_indent=" " * len(head), break_long_words=False,
-                        break_on_hyphens=False) if text else head)
+                        break_on_hyphens=False) or head)
 
 
 def print_mapping(mapping):
@@ -45,14 +51,6 @@ def print_mapping(mapping):
         if table.unused:
             print_beside("  not used     ", ", ".join(table.unused))
     sys.stdout.flush()
-
-
-def write_mapping(request, text):
-    write_whole(os.path.join(request.work, "mapping.toml"), text.encode("utf-8", "surrogateescape"))
-
-
-def write_result(request, **result):
-    write_whole(os.path.join(request.work, "result.json"), json.dumps(result, ensure_ascii=False).encode("utf-8", "replace"))
 
 
 def expect_kept(kept, text):
@@ -77,7 +75,7 @@ def import_by_mapping(request):
         raise InputError(request.settings_problems)
     text = mapping_text(mapping) if request.tables else text
     expect_kept(request.kept, text)
-    write_mapping(request, text)
+    request.write_mapping(text)
     return import_tables(tables, request.known)
 
 
@@ -90,7 +88,7 @@ def import_by_guess(request):
     tables = guess_tables(request.tables, request.known)
     mapping = mapping_of(tables)
     text = mapping_text(mapping)
-    write_mapping(request, text)
+    request.write_mapping(text)
     print_mapping(mapping)
     problems = unclear_entries(text, request.kept) + request.settings_problems
     rows = wrong_rows(tables) if problems else []
@@ -99,7 +97,7 @@ def import_by_guess(request):
             return import_tables(tables, request.known)
         except InputError as error:
             rows = error.problems
-    write_result(request, problems=problems + rows, wrong_rows=bool(rows))
+    request.write_result(problems=problems + rows, wrong_rows=bool(rows))
     return None
 
 
@@ -108,7 +106,7 @@ def main():
     imported = (import_by_mapping if request.mapping else import_by_guess)(request)
     if imported is not None:
         write_tables(imported, request.work, request.gzip)
-        write_result(request, plate_start=repr(imported.plate_start), notes=imported.notes)  # text: it may be infinite
+        request.write_result(plate_start=repr(imported.plate_start), notes=imported.notes)  # text: it may be infinite
 
 
 if __name__ == "__main__":
