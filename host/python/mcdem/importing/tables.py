@@ -22,6 +22,7 @@ class Table:
         self.named, self.columns = False, []  # whether the file has names of columns; otherwise they are "column 1", ..
         self.repeated = set()  # names that several columns have
         self.frames = []  # of a dump: (timestep, first row)
+        self._places = {}  # of columns by their names
         self.line_of = []  # of each row, from 1; empty if rows are not lines
         self._values = array.array("d")  # row by row; NaN: not a finite number
 
@@ -35,15 +36,14 @@ class Table:
     def name_columns(self, names, count):
         """Replaces names by the column's number if they are missing, repeated, or begin with a question mark or a minus, which a
         mapping uses for unconfirmed values and reversed columns."""
-        taken = set()
-        self.columns = []
-        for i in range(count):
-            name = names[i].strip(" \t\r") if i < len(names) else ""
-            if name in taken:
+        self.columns, self.repeated = [], set()
+        for i, name in enumerate([*names, *[""] * count][:count]):
+            name = name.strip(" \t\r")
+            if name in self._places:
                 self.repeated.add(name)
-            if not name or name[0] in "?-" or name in taken:
+            if not name or name[0] in "?-" or name in self._places:
                 name = f"column {i + 1}"
-            taken.add(name)
+            self._places[name] = i
             self.columns.append(name)
         self.named = bool(names)
 
@@ -66,12 +66,8 @@ class Table:
         return cut(self.lines[self.line_of[row] - 1], self.form.separator)[column]
 
     def find(self, name):
-        if name in self.columns:
-            return self.columns.index(name)
-        number = name.removeprefix("column ")
-        if number != name and number.isascii() and number.isdigit() and 1 <= int(number[:9]) <= len(self.columns):
-            return int(number[:9]) - 1
-        return None
+        """Position of a column by its name or as "column 3"; None if there is none."""
+        return self._places.get(name, {f"column {i + 1}": i for i in range(len(self.columns))}.get(name))
 
     def where(self, row):
         return f"{self.file}:{self.line_of[row]}" if self.line_of else self.file
