@@ -48,6 +48,7 @@ class Text(Tables):
             self.expect_table(text, ["x", "F"])
         self.expect_table("1.5,2\n2.5,-4\n", ["column 1", "column 2"])
         self.expect_table("x;F\n[mm];[mN]\n1,5;2\n2,5;-4\n", ["x [mm]", "F [mN]"])
+        self.expect_table("a [1];b [2]\nx [mm];F [mN]\n1,5;2\n2,5;-4\n", ["x [mm]", "F [mN]"])
         self.expect_table("Probe;Sand\nVorkraft;0,5\nWeg;3 mm\nx;F\n[mm];[N]\n1,5;2\n2,5;-4\n", ["x [mm]", "F [N]"])
         self.expect_table("H\xf6he [\xb5m];F\n1,5;2\n2,5;-4\n".encode("latin-1"), ["H\xf6he [\xb5m]", "F"])
         for name in ("?", "-F", "x"):

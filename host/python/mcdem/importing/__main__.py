@@ -19,22 +19,18 @@ from .read_mapping import parse_mapping, text_of_mapping
 LINE = 110
 
 
-def print_beside(head, text):
-    print(textwrap.fill(text, LINE, initial_indent=head, subsequent_indent=" " * len(head), break_long_words=False,
-                        break_on_hyphens=False) or head)
-
-
 def print_mapping(mapping):
     """Prints the role of each table and of its columns."""
     for table in mapping:
         more = f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""
         why = f": {table.role_why}" if table.role_why else ""
         print(f"{table.files[0]}{more}: {table.role} ({table.role_certainty}{why})")
-        entries = [(key.name, table[key.name]) for key in KEYS[table.role] if key.name in table]
-        for name, of in entries + [("wall " + word, of) for word, of in sorted(table.walls.items())]:
-            print_beside(f"  {name:<13} {' + '.join(of.words):<18} {of.certainty:<8}", of.why)
-        if table.unused:
-            print_beside("  not used     ", ", ".join(table.unused))
+        entries = {key.name: table[key.name] for key in KEYS[table.role] if key.name in table}
+        entries |= {"wall " + word: of for word, of in sorted(table.walls.items())}
+        lines = [(f"  {name:<13} {' + '.join(of.words):<18} {of.certainty:<8}", of.why) for name, of in entries.items()]
+        for head, text in lines + [("  not used     ", ", ".join(table.unused))] * bool(table.unused):
+            print(textwrap.fill(text, LINE, initial_indent=head, subsequent_indent=" " * len(head), break_long_words=False,
+                                break_on_hyphens=False) or head)
     sys.stdout.flush()
 
 

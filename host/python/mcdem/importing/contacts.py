@@ -22,9 +22,6 @@ class ContactFrames:
         self.point = self.force = np.zeros((0, 3))  # [m], on `grain` [N]
         self.rows = None
 
-    def __len__(self):
-        return len(self.grain)
-
 
 class _Reader:
     def __init__(self, table, grains, problems, most):

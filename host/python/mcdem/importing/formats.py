@@ -19,11 +19,12 @@ def _whole(word):
     return int(word) if re.fullmatch(r"\+?[0-9]{1,18}", word) else None
 
 
+def _wrong(table, line, what):
+    raise InputError(f"{table.file}:{line}: {what}")
+
+
 def parse_dump(table, lines):
     """`dump custom` (ITEM: ATOMS) and `dump local` (ITEM: ENTRIES), any number of frames, each with the names of its columns."""
-    def wrong(number, what):
-        raise InputError(f"{table.file}:{number}: {what}")
-
     table.begin("dump", lines, Form(" ", "."))
     items = [n for n, line in enumerate(lines, 1) if line.lstrip().startswith(ITEM)] + [len(lines) + 1]
     step = count = names = None
@@ -34,30 +35,30 @@ def parse_dump(table, lines):
             count = _whole(value)
             if count is None:
                 said = "the timestep" if what == "TIMESTEP" else "the number of rows"
-                wrong(min(line + 1, len(lines)), f"{said} must be a whole number >= 0, got {quoted(value)}")
+                _wrong(table, min(line + 1, len(lines)), f"{said} must be a whole number >= 0, got {quoted(value)}")
             if what == "TIMESTEP":
                 step, count = count, None
         elif what.startswith(("ATOMS", "ENTRIES")):
             columns = what.split()[1:]
             if step is None:
-                wrong(line, '"ITEM: TIMESTEP" must come before, got none')
+                _wrong(table, line, '"ITEM: TIMESTEP" must come before, got none')
             if not columns:
-                wrong(line, "the line must name the columns, got none: write the dump with a newer version")
+                _wrong(table, line, "the line must name the columns, got none: write the dump with a newer version")
             if names is None:
                 names = columns
                 table.name_columns(names, len(names))
             if columns != names:
-                wrong(line, f"the columns must be those of the first frame, {' '.join(names)}, got {' '.join(columns)}")
+                _wrong(table, line, f"the columns must be those of the first frame, {' '.join(names)}, got {' '.join(columns)}")
             table.frames.append((step, table.rows))
             for number in range(line + 1, end):
                 cells = lines[number - 1].split()
                 if cells and len(cells) != len(names):
-                    wrong(number, f"must have {len(names)} columns as line {line} says, got {len(cells)}")
+                    _wrong(table, number, f"must have {len(names)} columns as line {line} says, got {len(cells)}")
                 if cells:
                     table.add_row(cells, number)
             found = table.rows - table.frames[-1][1]
             if count not in (None, found):
-                wrong(line, f"must have the {count} rows that the frame promises, got {found}" + ("; truncated?" if found < count else ""))
+                _wrong(table, line, f"must have the {count} rows that the frame promises, got {found}" + ("; truncated?" if found < count else ""))
             step = None
     if not table.frames:
         raise InputError(f"{table.file}: must hold at least one frame, got none")
@@ -79,8 +80,8 @@ def parse_data(table, lines):
             break  # the next section
         values = [to_number(word) for word in words]
         if words and (len(words) not in (7, 10) or None in values or values[2] <= 0):
-            raise InputError(f"{table.file}:{number}: an atom must have 7 columns (id type diameter density x y z) or 10 (3 image "
-                             f"flags more), numbers with a diameter > 0, got {quoted(' '.join(words))}")
+            _wrong(table, number, "an atom must have 7 columns (id type diameter density x y z) or 10 (3 image flags more), numbers with "
+                   f"a diameter > 0, got {quoted(' '.join(words))}")
         if words:
             rows.append(values[:7])
     if not rows or promised != len(rows):
@@ -173,24 +174,21 @@ def parse_vtk(table, lines):
     """VTK's legacy format in ASCII with polygonal data, as Yade's VTKExporter writes it, which meshio does not read. A row is a
     point with its data, x y z first; where there are lines, a line with its data, x1 y1 z1 x2 y2 z2 of its two ends first.
     https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html"""
-    def wrong(number, what):
-        raise InputError(f"{table.file}:{number}: {what}")
-
     if "".join(lines[2:3]).strip() != "ASCII":
-        wrong(min(3, len(lines)), "the format must be ASCII: write the file as text")
+        _wrong(table, min(3, len(lines)), "the format must be ASCII: write the file as text")
     first, points, ends, fields, of_points, count = 0, np.zeros((0, 3)), None, {True: {}, False: {}}, True, 0
     for line, (kind, *words), numbers in _vtk_sections(lines):
         if kind == "DATASET" and words == ["POLYDATA"]:
             continue
         if kind not in WIDTHS or not words:
-            wrong(line, f"must be one of {', '.join(WIDTHS)}, of a data set POLYDATA, got " + quoted(" ".join([kind, *words])))
+            _wrong(table, line, f"must be one of {', '.join(WIDTHS)}, of a data set POLYDATA, got " + quoted(" ".join([kind, *words])))
         if kind in ("POINTS", "LINES", "POINT_DATA", "CELL_DATA"):
             count = _whole(words[0])
             if count is None:
-                wrong(line, f"a section must say how many there are, got {quoted(words[0])}")
+                _wrong(table, line, f"a section must say how many there are, got {quoted(words[0])}")
         wanted = WIDTHS[kind] * count
         if len(numbers) != wanted:
-            wrong(line, f"{wanted} numbers must follow, got {len(numbers)}" + ("; truncated?" if len(numbers) < wanted else ""))
+            _wrong(table, line, f"{wanted} numbers must follow, got {len(numbers)}" + ("; truncated?" if len(numbers) < wanted else ""))
         values = np.array(numbers_of(numbers, ".")).reshape(-1, max(WIDTHS[kind], 1))
         if kind == "POINTS":
             first, points = line, values

@@ -35,22 +35,19 @@ class GrainFrames:
             return np.where((rows >= 0) & (rows < self.plate_rows) & (rows == np.round(rows)), rows, -1).astype(int)
         if by in ("plate", "nearest"):
             return self.plate.find(keys) if by == "plate" else self.plate.nearest(keys)
-        frames = self.index.find(keys)
-        return np.where(frames < 0, -1, np.asarray(self.row)[frames]) if self.row is not None else np.full(len(keys), -1)
+        return np.append(self.row if self.row is not None else np.full(len(self.keys), -1), -1)[self.index.find(keys)]
 
     def frames_of(self, by, keys):
         """The same for frames of the grains. If the rows of the plate are unknown, frames in order are those of the grains."""
         if by == "grains" or (by == "plate" and self.row is None):
             return self.index.find(keys)
         if self.row is None:
-            places = np.arange(len(keys))
-            return np.where(places < len(self.keys), places, -1)
+            return FrameIndex(range(len(self.keys))).find(range(len(keys)))
         return self.frames_at(self.plate_rows_of(by, keys))
 
     def frames_at(self, rows):
         """The first frame at each of these rows of the plate; -1: none."""
-        first = {row: frame for frame, row in reversed(list(enumerate(self.row))) if row >= 0}
-        return np.array([first.get(row, -1) for row in rows], int)
+        return np.where(np.asarray(rows) < 0, -1, FrameIndex(self.row).find(rows))
 
     def place(self, by, plate):
         """Finds the row of the plate for each frame."""

@@ -36,17 +36,12 @@ def whole_entry(mapped, key, problems):
     return 0
 
 
-def _number_in_name(file):
-    """The last number in a file's name without its extensions: 3 for "scan2/grains_003.csv.gz"."""
-    stem = os.path.splitext(os.path.basename(file).removesuffix(".gz"))[0]
-    digits = re.findall(r"[0-9]+", stem)
-    return float(digits[-1]) if digits else None
-
-
 def _keys_of_files(parts):
-    """The numbers in the files' names if all have one and they increase; otherwise their positions."""
-    numbers = [_number_in_name(part.file) for part in parts]
-    if len(parts) > 1 and None not in numbers and (np.diff(numbers) > 0).all():
+    """The last numbers in the files' names without extensions, 3 for "scan2/grains_003.csv.gz", if all have one and they increase;
+    otherwise the files' positions."""
+    stems = [os.path.splitext(os.path.basename(part.file).removesuffix(".gz"))[0] for part in parts]
+    numbers = [float(re.findall("[0-9]+", stem)[-1]) for stem in stems if re.search("[0-9]", stem)]
+    if len(parts) > 1 and len(numbers) == len(parts) and (np.diff(numbers) > 0).all():
         return numbers, "file"
     return range(len(parts)), "place"
 

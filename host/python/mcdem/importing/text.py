@@ -107,19 +107,15 @@ def _note_marks(seen, cells, line):
             seen.setdefault(kind, (cell, line))
 
 
-def _in_brackets(word):
-    return len(word) >= 2 and word[0] in "[(" and word[-1] in "])"
-
-
 def _names_of(headings, comment, format_, width):
     """Names of the columns: the last line before the first row, or the last two if the second contains units."""
     headings = [names for names in headings if len(names) in (width, width + 1)]
     if not headings:
         return comment if len(comment) == width else format_
     names = headings[-1]
-    if len(headings) > 1 and all(_in_brackets(word) or word in UNITS for word in names):
-        units = ["" if (unit := word[1:-1] if _in_brackets(word) else word) in ("-", "1") else unit for word in names] + [""]
-        names = [name + (f" [{unit}]" if unit else "") for name, unit in zip(headings[-2], units)]
+    units = [re.sub(r"^[\[(](.*)[\])]$", r"\1", word) for word in names]
+    if len(headings) > 1 and all(unit != word or word in UNITS for unit, word in zip(units, names)):
+        names = [name + ("" if unit in ("", "-", "1") else f" [{unit}]") for name, unit in zip(headings[-2], units + [""])]
     return names
 
 
