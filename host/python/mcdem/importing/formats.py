@@ -93,10 +93,6 @@ def parse_data(table, lines):
     table.set_numbers("data", ["x", "y", "z", "diameter"], rows[order][:, [4, 5, 6, 2]])
 
 
-def looks_like_xyz(lines):
-    return len(lines) > 2 and lines[0].strip().isdigit() and "Properties=" in lines[1]
-
-
 def parse_xyz(table, text):
     """Extended xyz, frame by frame, read by ASE; vectors become name_x, name_y, name_z."""
     from ase.io import iread

@@ -55,37 +55,31 @@ class GrainFrames:
         self.row = list(self.plate_rows_of(by, self.keys))
 
 
-def _read_columns(rows, mapped):
-    """Number, centre and diameter in each row, and which rows are complete."""
-    unit, size_key = mapped.length_factor(), next((key for key in SIZE_KEYS if key in rows), None)
-    wanted = rows.wanted()
-    centres = rows.numbers("xyz", wanted)
-    sign = np.array([signed_column(mapped.word(key))[0] for key in "xyz"], float)
-    begin = sign * [mapped.number(f"origin_{axis}") for axis in "xyz"]
-    size = rows.number(size_key, wanted) if size_key else np.full(len(rows), mapped.number("same_diameter"))
-    ids = rows.whole_number("grain") if "grain" in rows else None
-    for i in np.flatnonzero((size <= 0) & wanted)[:1]:
-        rows.problem_once("size", i, f"{size_key or 'same_diameter'} must be > 0, got {number_text(size[i])}")
-    whole = wanted & np.isfinite(centres).all(axis=1) & np.isfinite(size) & (True if ids is None else np.isfinite(ids))
-    diameter = unit * (2 * size if size_key == "radius" else np.cbrt(6 * size / np.pi) if size_key == "volume" else size)
-    return ids, unit * (centres - begin), diameter, whole, sign, unit * begin
-
-
 def _read_table(table, frames, problems):
     mapped, rows = table.map, Rows(table, problems)
-    size = next((key for key in SIZE_KEYS if key in rows), "diameter")
+    size_key = next((key for key in SIZE_KEYS if key in rows), "same_diameter" if "same_diameter" in mapped else "diameter")
     first = whole_entry(mapped, "first_grain", problems)
-    if rows.lacks("x", "y", "z", *([] if "same_diameter" in mapped else [size])):
+    if rows.lacks("x", "y", "z", *[size_key] * (size_key in SIZE_KEYS)):
         return
     if not len(rows):
         problems.add(mapped.files[0], "must have rows, one for each grain of a frame: leave a table without any out")
         return
-    ids, centres, diameter, whole, frames.sign, frames.origin = _read_columns(rows, mapped)
+    unit, wanted = mapped.length_factor(), rows.wanted()
+    centres = rows.numbers("xyz", wanted)
+    frames.sign = np.array([signed_column(mapped.word(key))[0] for key in "xyz"], float)
+    frames.origin = unit * frames.sign * [mapped.number(f"origin_{axis}") for axis in "xyz"]
+    size = rows.number(size_key, wanted) if size_key in rows else np.full(len(rows), mapped.number(size_key))
+    ids = rows.whole_number("grain") if "grain" in rows else np.zeros(len(rows))
+    for i in np.flatnonzero((size <= 0) & wanted)[:1]:
+        rows.problem_once("size", i, f"{size_key} must be > 0, got {number_text(size[i])}")
+    whole = wanted & np.isfinite(centres).all(axis=1) & np.isfinite(size) & np.isfinite(ids)
+    centres = unit * centres - frames.origin
+    diameter = unit * (2 * size if size_key == "radius" else np.cbrt(6 * size / np.pi) if size_key == "volume" else size)
     starts = rows.frames()
     for begin, end in zip(starts, starts[1:]):
         mine = begin + np.flatnonzero(whole[begin:end])
         if len(mine):
-            of_frame = first + np.arange(len(mine)) if ids is None else ids[mine].astype(int)
+            of_frame = ids[mine].astype(int) if "grain" in rows else first + np.arange(len(mine))
             order = np.argsort(of_frame, kind="stable")
             _add_frame(frames, rows, mine[order], of_frame[order], centres[mine[order]], diameter[mine[order]])
 

@@ -187,7 +187,6 @@ INTRODUCTION = """\
 # An entry that begins with a question mark is not safe: put in what is right, without the question mark, and import
 # again with --mapping. Columns go by their names, or as "column 3"; where several are listed they are added up.
 """
-UNCLEAR_MARK = "  # unclear: "
 
 
 def _one_line(text):
@@ -234,10 +233,5 @@ def mapping_text(tables):
 
 def unclear_entries(text, file):
     """The lines that must be confirmed, each as a problem with the possible values."""
-    problems = []
-    for number, line in enumerate(text.split("\n"), 1):
-        key, equals, rest = line.partition(" = ")
-        value, mark, why = rest.rpartition(UNCLEAR_MARK)
-        if equals and mark and not line.startswith("#"):
-            problems.append(f"{file}:{number}: {key} must be confirmed, got {value}: {why}")
-    return problems
+    lines = [re.fullmatch(f"([^#].*?) = (.*)  # {UNCLEAR}: (.*)", line) for line in text.split("\n")]
+    return [f"{file}:{number}: {line[1]} must be confirmed, got {line[2]}: {line[3]}" for number, line in enumerate(lines, 1) if line]

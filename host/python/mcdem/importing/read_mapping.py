@@ -1,5 +1,6 @@
 """Reads mapping.toml, possibly edited by the user."""
 import os
+import pathlib
 import re
 import tomllib
 
@@ -124,9 +125,7 @@ def text_of_mapping(file):
     if not os.path.isfile(file) or os.path.getsize(file) > LARGEST:
         got = "something else" if os.path.lexists(file) else "no such file"
         raise InputError(f"{file}: must be a mapping of at most 1 MB, got {got}")
-    with open(file, "rb") as stream:
-        content = stream.read()
     try:
-        return content.decode().replace("\r\n", "\n")
+        return pathlib.Path(file).read_bytes().decode().replace("\r\n", "\n")
     except UnicodeDecodeError:
         raise InputError(f"{file}: must be text in UTF-8") from None

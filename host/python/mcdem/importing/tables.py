@@ -110,7 +110,7 @@ def parse_table(content, file, form=None):
         formats.parse_vtk(table, lines)
     elif formats.looks_like_data(lines):
         formats.parse_data(table, lines)
-    elif formats.looks_like_xyz(lines):
+    elif len(lines) > 2 and lines[0].strip().isdigit() and "Properties=" in lines[1]:
         formats.parse_xyz(table, text)
     else:
         parse_text(table, lines, form, problems)
