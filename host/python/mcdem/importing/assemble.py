@@ -173,8 +173,9 @@ class _Assembly:
         if grains.keys:
             frames, count = np.argsort(grains.row), len(grains.diameter)
             position = np.concatenate([grains.position[frame] for frame in frames])
-            grain_table = pd.DataFrame({"frame": np.repeat(np.sort(grains.row) - first, count), "grain": np.tile(np.arange(count), len(frames)),
-                                        **dict(zip(("x_m", "y_m", "z_m"), position.T)), "diameter_m": np.tile(grains.diameter, len(frames))})
+            grain_table = pd.DataFrame({"frame": np.repeat(np.sort(grains.row) - first, count),
+                                        "grain": np.tile(np.arange(count), len(frames)), **dict(zip(("x_m", "y_m", "z_m"), position.T)),
+                                        "diameter_m": np.tile(grains.diameter, len(frames))})
         if contacts is not None:
             contacts = contacts[contacts.scan >= first].sort_values("scan", kind="stable").drop(columns="row")
             contacts["partner"] = contacts.partner.map(lambda p: WALLS[-1 - p] if p < 0 else p)

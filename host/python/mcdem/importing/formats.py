@@ -58,7 +58,8 @@ def parse_dump(table, lines):
                     table.add_row(cells, number)
             found = table.rows - table.frames[-1][1]
             if count not in (None, found):
-                _wrong(table, line, f"must have the {count} rows that the frame promises, got {found}" + ("; truncated?" if found < count else ""))
+                _wrong(table, line, f"must have the {count} rows that the frame promises, got {found}"
+                       + ("; truncated?" if found < count else ""))
             step = None
     if not table.frames:
         raise InputError(f"{table.file}: must hold at least one frame, got none")
@@ -133,7 +134,8 @@ def parse_mesh(table, content):
                 mesh = meshio.read(file)
             columns, values = _with_fields(["x", "y", "z"], mesh.points, mesh.point_data)
         except (Exception, SystemExit) as error:  # meshio exits if it cannot read a file
-            raise InputError(f"{table.file}: must be a VTK file that meshio reads, got: {quoted(f'{type(error).__name__} {error}')}") from None
+            raise InputError(f"{table.file}: must be a VTK file that meshio reads, got: "
+                             + quoted(f"{type(error).__name__} {error}")) from None
     if not len(values):
         raise InputError(f"{table.file}: must hold points, got none")
     table.set_numbers("vtk", columns, values)

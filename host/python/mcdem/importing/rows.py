@@ -109,7 +109,8 @@ class Rows:
     def cells(self, key, column=0):
         """Numbers in one of the key's columns, NaN where a cell is none."""
         places = self.columns[key][column][1]
-        return np.concatenate([np.zeros(0), *(part.numbers(place)[:n] for part, place, n in zip(self.parts, places, self.counts) if n)])[self.at]
+        parts = [part.numbers(place)[:n] for part, place, n in zip(self.parts, places, self.counts) if n]
+        return np.concatenate([np.zeros(0), *parts])[self.at]
 
     def stated(self, key):
         """Whether the cells are not empty: a trigger has numbers in some rows only."""

@@ -94,17 +94,16 @@ def parse_table(content, file, form=None):
     """`form` overrides the guess of the text format."""
     table, problems = Table(file), Problems()
     content = content.removeprefix(b"\xef\xbb\xbf")
-    if formats.is_mesh(content):
-        formats.parse_mesh(table, content)
-        return table
     try:
         text = content.decode()
     except UnicodeDecodeError:
         text = content.decode("latin-1")  # written by European spreadsheets instead of UTF-8
-    if "\0" in text:
-        raise InputError(f"{file}: must be text, got zero bytes: save it as text in UTF-8")
     lines = [line.removesuffix("\r") for line in text.removesuffix("\n").split("\n")]
-    if text[:1000].lstrip(" \t\r").startswith(formats.ITEM):
+    if formats.is_mesh(content):
+        formats.parse_mesh(table, content)
+    elif "\0" in text:
+        problems.add(file, "must be text, got zero bytes: save it as text in UTF-8")
+    elif text[:1000].lstrip(" \t\r").startswith(formats.ITEM):
         formats.parse_dump(table, lines)
     elif text.startswith("# vtk DataFile"):
         formats.parse_vtk(table, lines)
