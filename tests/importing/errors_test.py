@@ -42,34 +42,34 @@ class Errors(ImportCase):
         self.expect_one(self.mapping_problems("[[table]\n"), "m:1: must be TOML, got")
         self.assertEqual(self.mapping_problems('x = 1\n[[table]]\nrole = "sand"\nseparator = "|"\n'),
                          ['m:1: "x" must be a list of tables, [[table]], got something else',
-                          'm:3: role must be one of plate, grains, contacts, unused, got "sand"',
+                          'm:3: role must be one of "plate" "grains" "contacts" "unused", got "sand"',
                           "m:2: files must name at least one file, got none",
-                          'm:4: separator must be one of ",", ";", tab, blanks, got "|"'])
+                          'm:4: separator must be one of "," ";" "tab" "blanks", got "|"'])
         problems = self.mapping_problems('[[table]]\nrole = "grains"\nfiles = ["a"]\nx = 3\nlength_unit = "ft"\norigin_x = "left"\n'
                                          'fx = "f"\ndiameter = ["a", "b"]\n')
         self.assertEqual(len(problems), 5)
         for part in ("m:8: diameter must be one text, got 2", 'm:7: "fx" must be a key of a table of grains, got another',
-                     'm:5: length_unit must be one of m cm mm um voxel, got "ft"', 'm:6: origin_x must be a number in quotes, got "left"',
+                     'm:5: length_unit must be one of "m" "cm" "mm" "um" "voxel", got "ft"', 'm:6: origin_x must be a number in quotes, got "left"',
                      'm:4: "x" must be a text, or a list of texts'):
             self.expect_among(problems, part)
         self.assertEqual(self.mapping_problems('[[table]]\nrole = "contacts"\nfiles = ["a"]\n[table.walls]\n1 = "roof"\n'),
-                         ['m:5: a wall must be one of x_min, x_max, y_min, y_max, floor, plate, by direction, got "roof"'])
+                         ['m:5: a wall must be one of "x_min" "x_max" "y_min" "y_max" "floor" "plate" "by direction", got "roof"'])
 
     def test_units_and_signs_must_be_stated(self):
         def problems(text):
             return self.mapping_problems('[[table]]\nfiles = ["a"]\n' + text)
 
         self.assertEqual(problems('role = "plate"\nplate_z = "h"\ntop_force = "F"\n'),
-                         ["m:1: length_unit must be stated, one of m cm mm um voxel, got none",
-                          "m:1: force_unit must be stated, one of N mN uN kN cN daN gf kgf lbf, got none",
-                          "m:1: force_sign must be stated, one of + -: +: upward force on the plate is positive; -: negative, got none"])
+                         ["m:1: length_unit must be stated: one of m, cm, mm, um, voxel, got none",
+                          "m:1: force_unit must be stated: one of N, mN, uN, kN, cN, daN, gf, kgf, lbf, got none",
+                          "m:1: force_sign must be stated: one of +, -; +: upward force on the plate is positive; -: negative, got none"])
         self.expect_one(problems('role = "grains"\nx = "h"\n'), "length_unit must")
         self.expect_one(problems('role = "grains"\nx = "h"\nlength_unit = "voxel"\n'), "voxel_size must be stated: edge of a voxel [m]")
         self.expect_one(problems('role = "grains"\nx = "h"\nlength_unit = "voxel"\nvoxel_size = "0"\n'), "voxel_size must be > 0 [m]")
         missing = problems('role = "contacts"\nfx = "F"\n')
         self.assertEqual(len(missing), 2)
         self.expect_among(missing, "force_unit must")
-        self.expect_among(missing, "force_on must be stated, one of grain partner: on which")
+        self.expect_among(missing, "force_on must be stated: one of grain, partner; on which")
         missing = problems('role = "contacts"\nforce = "F"\nx = "x"\n')
         self.assertEqual(len(missing), 2)
         self.expect_among(missing, "length_unit must")

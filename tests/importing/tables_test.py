@@ -48,6 +48,7 @@ class Text(Tables):
             self.expect_table(text, ["x", "F"])
         self.expect_table("1.5,2\n2.5,-4\n", ["column 1", "column 2"])
         self.expect_table("x;F\n[mm];[mN]\n1,5;2\n2,5;-4\n", ["x [mm]", "F [mN]"])
+        self.expect_table("a [1];b [2]\nx [mm];F [mN]\n1,5;2\n2,5;-4\n", ["x [mm]", "F [mN]"])
         self.expect_table("Probe;Sand\nVorkraft;0,5\nWeg;3 mm\nx;F\n[mm];[N]\n1,5;2\n2,5;-4\n", ["x [mm]", "F [N]"])
         self.expect_table("H\xf6he [\xb5m];F\n1,5;2\n2,5;-4\n".encode("latin-1"), ["H\xf6he [\xb5m]", "F"])
         for name in ("?", "-F", "x"):
@@ -160,8 +161,9 @@ class Vtk(Tables):
     def test_invalid_files_are_reported(self):
         self.assertEqual(self.problems("# vtk DataFile Version 3.0\nc\nBINARY\n"), ["t:3: the format must be ASCII: write the file as text"])
         self.assertEqual(self.problems(VTK), ["t: must hold POINTS, got none"])
-        self.expect_one(self.problems(VTK + "POINTS 2 double\n1 2 3\n"), "3 more numbers must follow, got the file's end")
-        self.expect_among(self.problems(VTK + "POINTS 99999999999 double\n1 2 3\n"), "must say how many there are")
+        self.expect_one(self.problems(VTK + "POINTS 2 double\n1 2 3\n"), "t:6: 6 numbers must follow, got 3; truncated?")
+        self.expect_one(self.problems(VTK + "POINTS 99999999999 double\n1 2 3\n"), "299999999997 numbers must follow, got 3")
+        self.expect_one(self.problems(VTK + "POINTS many double\n1 2 3\n"), 't:6: a section must say how many there are, got "many"')
         self.expect_among(self.problems(VTK + "POINTS 1 double\n1 2 3\nLINES 1 3\n2 0 1\n"), "t: line 0 must join two of the 1 points")
         self.expect_one(self.problems(VTK + "POINTS 1 double\n1 2 3\nPOINT_DATA 2\nSCALARS r double\n1\n2\n"),
                         "r must have 1 rows, as the points or lines, got 2")

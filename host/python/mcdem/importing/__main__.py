@@ -19,40 +19,19 @@ from .read_mapping import parse_mapping, text_of_mapping
 LINE = 110
 
 
-class Request:
-    def __init__(self, work, kept, mapping, *tables):
-        self.work, self.kept, self.mapping, self.tables = work, kept, mapping, tables
-        with open(os.path.join(work, "request.json"), encoding="utf-8") as file:
-            stated = json.load(file)
-        self.known = Known(**{name: value for name, value in stated["known"].items() if value is not None})
-        self.gzip, self.settings_problems = stated["gzip"], stated["settings_problems"]
-
-
-def print_beside(head, text):
-    print(textwrap.fill(text, LINE, initial_indent=head, subsequent_indent=" " * len(head), break_long_words=False,
-                        break_on_hyphens=False) if text else head)
-
-
 def print_mapping(mapping):
     """Prints the role of each table and of its columns."""
     for table in mapping:
         more = f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""
         why = f": {table.role_why}" if table.role_why else ""
         print(f"{table.files[0]}{more}: {table.role} ({table.role_certainty}{why})")
-        entries = [(key.name, table[key.name]) for key in KEYS[table.role] if key.name in table]
-        for name, of in entries + [("wall " + word, of) for word, of in sorted(table.walls.items())]:
-            print_beside(f"  {name:<13} {' + '.join(of.words):<18} {of.certainty:<8}", of.why)
-        if table.unused:
-            print_beside("  not used     ", ", ".join(table.unused))
+        entries = {key.name: table[key.name] for key in KEYS[table.role] if key.name in table}
+        entries |= {"wall " + word: of for word, of in sorted(table.walls.items())}
+        lines = [(f"  {name:<13} {' + '.join(of.words):<18} {of.certainty:<8}", of.why) for name, of in entries.items()]
+        for head, text in lines + [("  not used     ", ", ".join(table.unused))] * bool(table.unused):
+            print(textwrap.fill(text, LINE, initial_indent=head, subsequent_indent=" " * len(head), break_long_words=False,
+                                break_on_hyphens=False) or head)
     sys.stdout.flush()
-
-
-def write_mapping(request, text):
-    write_whole(os.path.join(request.work, "mapping.toml"), text.encode("utf-8", "surrogateescape"))
-
-
-def write_result(request, **result):
-    write_whole(os.path.join(request.work, "result.json"), json.dumps(result, ensure_ascii=False).encode("utf-8", "replace"))
 
 
 def expect_kept(kept, text):
@@ -68,47 +47,48 @@ def expect_kept(kept, text):
         raise InputError(f"{kept}: is another mapping, and is not replaced: give another folder (--out), or remove it")
 
 
-def import_by_mapping(request):
-    text = text_of_mapping(request.mapping)
-    tables = read_import_tables(parse_mapping(text, request.mapping), request.tables, request.mapping)
-    mapping = mapping_of(tables)
-    print_mapping(mapping)
-    if request.settings_problems:
-        raise InputError(request.settings_problems)
-    text = mapping_text(mapping) if request.tables else text
-    expect_kept(request.kept, text)
-    write_mapping(request, text)
-    return import_tables(tables, request.known)
-
-
-def import_by_guess(request):
-    """None if the guess is uncertain."""
-    if not request.tables:
-        raise InputError("TABLE: must be at least one file, or --mapping must name them, got neither")
-    if os.path.lexists(request.kept):
-        raise InputError(f"{request.kept}: is there already: import with --mapping {request.kept}, or remove it")
-    tables = guess_tables(request.tables, request.known)
-    mapping = mapping_of(tables)
-    text = mapping_text(mapping)
-    write_mapping(request, text)
-    print_mapping(mapping)
-    problems = unclear_entries(text, request.kept) + request.settings_problems
-    rows = wrong_rows(tables) if problems else []
-    if not problems:
-        try:
-            return import_tables(tables, request.known)
-        except InputError as error:
-            rows = error.problems
-    write_result(request, problems=problems + rows, wrong_rows=bool(rows))
-    return None
+def write_result(work, **result):
+    write_whole(os.path.join(work, "result.json"), json.dumps(result, ensure_ascii=False).encode("utf-8", "replace"))
 
 
 def main():
-    request = Request(*sys.argv[1:])
-    imported = (import_by_mapping if request.mapping else import_by_guess)(request)
-    if imported is not None:
-        write_tables(imported, request.work, request.gzip)
-        write_result(request, plate_start=repr(imported.plate_start), notes=imported.notes)  # text: it may be infinite
+    work, kept, given, *files = sys.argv[1:]
+    with open(os.path.join(work, "request.json"), encoding="utf-8") as file:
+        request = json.load(file)
+    known = Known(**{name: value for name, value in request["known"].items() if value is not None})
+    if given:
+        text = text_of_mapping(given)
+        tables = read_import_tables(parse_mapping(text, given), files, given)
+    elif not files:
+        raise InputError("TABLE: must be at least one file, or --mapping must name them, got neither")
+    elif os.path.lexists(kept):
+        raise InputError(f"{kept}: is there already: import with --mapping {kept}, or remove it")
+    else:
+        tables = guess_tables(files, known)
+    mapping = mapping_of(tables)
+    if files:
+        text = mapping_text(mapping)
+    print_mapping(mapping)
+    problems = request["settings_problems"]
+    if given and problems:
+        raise InputError(problems)
+    if given:
+        expect_kept(kept, text)
+    write_whole(os.path.join(work, "mapping.toml"), text.encode("utf-8", "surrogateescape"))
+    if not given:
+        problems = unclear_entries(text, kept) + problems
+    try:
+        rows = wrong_rows(tables) if problems else []
+        imported = None if problems else import_tables(tables, known)
+    except InputError as error:
+        if given:
+            raise
+        rows = error.problems
+    if problems or rows:
+        write_result(work, problems=problems + rows, wrong_rows=bool(rows))
+    else:
+        write_tables(imported, work, request["gzip"])
+        write_result(work, plate_start=repr(imported.plate_start), notes=imported.notes)  # text: it may be infinite
 
 
 if __name__ == "__main__":

@@ -48,18 +48,22 @@ class _Assembly:
 
     def run(self):
         plates, grains, contacts = (of_role(self.tables, role) for role in ("plate", "grains", "contacts"))
+        start = self.known.plate_start
         if len(plates) != 1:
             self.problems.add("plate", f"must be one table with the plate's position and force by frame, got {len(plates)}: say "
                               '`role = "plate"` in the mapping, or give the table')
+        elif "displacement" in plates[0].map and np.isnan(start):
+            self.problems.add(plates[0].map.files[0], "displacements count downwards from plate.start, which must be given [m]: --set "
+                              "plate.start=..")
         else:
-            self.place_plate(plates[0])
+            self.plate = import_plate(plates[0], start, self.problems, self.known.programme)
         self.grains = import_grains(grains, self.problems)
         if contacts and not grains:
             self.problems.add("grains", "must be a table of the grains, for contacts name them, got none")
         self.problems.report()
         if grains:
             self.place_grains(grains[0].map.word("frames_by", "plate"))
-        check_heights(self.plate, self.known.plate_start, self.dropped)
+        check_heights(self.plate, start, self.dropped)
         tables = []
         if self.grains.row is not None and -1 not in self.grains.row:
             for table in contacts:
@@ -67,37 +71,26 @@ class _Assembly:
         self.problems.report()
         return self.result(pd.concat(tables) if tables else None)
 
-    def place_plate(self, table):
-        if "displacement" in table.map and np.isnan(self.known.plate_start):
-            self.problems.add(table.map.files[0], "displacements count downwards from plate.start, which must be given [m]: --set "
-                              "plate.start=..")
-        else:
-            self.plate = import_plate(table, self.known.plate_start, self.problems, self.known.programme)
-
     def place_grains(self, by):
-        grains = self.grains
+        def wrong(frame, topic, what):
+            rows, first = grains.where[frame]
+            rows.problem_once(topic, first, f"frame {number_text(grains.keys[frame])} must {what} in the mapping")
+
+        grains, frames, rows = self.grains, len(self.grains.keys), len(self.plate)
         grains.place(by if by in ("order", "rows", "nearest") else "plate", self.plate)
-        if by == "order" and len(grains.keys) < len(self.plate):
-            self.notes.append(f"frames_by is order: the {len(grains.keys)} frames of the grains are at the first {len(grains.keys)} of the plate's "
-                              f"{len(self.plate)} rows")
+        if by == "order" and frames < rows:
+            self.notes.append(f"frames_by is order: the {frames} frames of the grains are at the first {frames} of the plate's {rows} rows")
+        first_at = grains.frames_at(grains.row)
         for frame, row in enumerate(grains.row):
-            rows, first = grains.where[frame]
             if row < 0:
-                rows.problem_once("frame", first, f"frame {number_text(grains.keys[frame])} must be one of the plate's {len(self.plate)} rows, "
-                                  "got none like it: see frame and frames_by in the mapping")
+                wrong(frame, "frame", f"be one of the plate's {rows} rows, got none like it: see frame and frames_by")
                 continue
-            size = np.array([*self.known.box, self.plate.z[row]])
-            outside = ((grains.position[frame] < 0) | (grains.position[frame] > size)).any(axis=1)
-            if outside.any():
-                at = ", ".join(f"{x:.4g}" for x in grains.position[frame][np.argmax(outside)])
-                rows.problem_once("inside", first, f"centres must lie in the box of {size[0]:g} by {size[1]:g} m below the plate at "
-                                  f"{size[2]:g} m, got {at} in frame {number_text(grains.keys[frame])}: see length_unit, origin_x, "
-                                  "origin_y, origin_z and frames_by in the mapping")
-        again = (np.array(grains.row) >= 0) & (grains.frames_at(grains.row) < np.arange(len(grains.row)))
-        for frame in np.flatnonzero(again)[:1]:
-            rows, first = grains.where[frame]
-            rows.problem_once("row", first, f"frame {number_text(grains.keys[frame])} must have a row of the plate of its own, got one that an "
-                              "earlier frame has: see frames_by in the mapping")
+            if first_at[frame] < frame:
+                wrong(frame, "row", "have a row of the plate of its own, got one that an earlier frame has: see frames_by")
+            x, y, z = size = np.array([*self.known.box, self.plate.z[row]])
+            for centre in grains.position[frame][((grains.position[frame] < 0) | (grains.position[frame] > size)).any(axis=1)][:1]:
+                wrong(frame, "inside", f"have all centres in the box of {x:g} by {y:g} m below the plate at {z:g} m, got one at "
+                      + ", ".join(f"{place:.4g}" for place in centre) + ": see length_unit, origin_x, origin_y, origin_z and frames_by")
         if min(grains.row) > 0:  # an experiment starts at the first frame of the grains
             self.dropped = min(grains.row)
             self.notes.append(f"the plate's first {self.dropped} rows are left out: grains are known from then on")
@@ -118,45 +111,33 @@ class _Assembly:
                                "partner": np.where(reversed_, frames.grain, frames.partner), "side": reversed_, "row": frames.row,
                                **dict(zip(("x", "y", "z", "fx", "fy", "fz"), np.hstack([frames.point, force]).T))})
         all_of = all_of[all_of.scan >= 0].reset_index(drop=True)
-        return self.put_points(self.joined(all_of, table.map.word("sides", "one") == "both", frames, before), frames)
+        return self.put_points(self.joined(all_of, table.map.word("sides", "one") == "both", frames.rows, before), frames)
 
-    def joined(self, contacts, both, frames, before):
-        """The mean of both sides if contacts are listed from both."""
-        pair = ["scan", "grain", "partner"]
-        place, size = contacts.groupby(pair).cumcount(), np.linalg.norm(contacts[["fx", "fy", "fz"]], axis=1)
-        first_side = contacts.groupby(pair).side.transform("first")
+    def joined(self, contacts, both, rows, before):
+        """The mean of both sides if contacts are listed from both. Weak forces may differ more, because their errors are those of
+        the strong ones."""
+        pair, forces = ["scan", "grain", "partner"], ["fx", "fy", "fz"]
+        of_pairs = contacts.groupby(pair, sort=False)
+        place, first = of_pairs.cumcount(), of_pairs.transform("first")
         in_others = pd.MultiIndex.from_frame(contacts[pair]).isin([key for table in before for key in zip(*table[pair].values.T)])
-        from_other_side = (place == 1) & (contacts.side != first_side) & ~in_others
-        twice = (place > 0) & ~(from_other_side & both) | in_others
-        for i in np.flatnonzero(twice)[:1]:
-            frames.rows.problem_once("twice", contacts.row[i], "each contact must be there once in a frame, got it " + (
+        other_side = (place == 1) & (contacts.side != first.side) & ~in_others
+        for i in np.flatnonzero((place > 0) & ~(other_side & both) | in_others)[:1]:
+            rows.problem_once("twice", contacts.row[i], "each contact must be there once in a frame, got it " + (
                 'from its other side too: write `sides = "both"` in the mapping where each is listed from either side'
-                if from_other_side[i] else "again in the same direction or in another table: make one row of rows of normal and tangential "
+                if other_side[i] else "again in the same direction or in another table: make one row of rows of normal and tangential "
                 "parts, and leave out what is there twice"))
-        kept = contacts[place == 0].set_index(pair)
-        if both and from_other_side.any():
-            other = contacts[from_other_side].set_index(pair)
-            largest = pd.Series(size).groupby(contacts.scan).max()
-            self.check_sides(kept.loc[other.index], other, largest.loc[other.index.get_level_values("scan")].values, frames)
-            values = ["x", "y", "z", "fx", "fy", "fz"]
-            kept.loc[other.index, values] = (kept.loc[other.index, values] + other[values]) / 2
-        return kept.reset_index()
-
-    @staticmethod
-    def check_sides(first, other, largest, frames):
-        """Weak forces may differ more, because their errors are those of the strong ones."""
-        a, b = first[["fx", "fy", "fz"]].values, other[["fx", "fy", "fz"]].values
-        sizes, apart = (np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)), np.linalg.norm(a - b, axis=1)
-        for i in np.flatnonzero(apart > np.maximum(MAX_APART * np.maximum(*sizes), WEAK * largest))[:1]:
-            frames.rows.problem_once("sides", other.row.iloc[i], f"the forces of a contact's two sides must be opposite, got sizes of "
-                                     f"{sizes[0][i]:.4g} and {sizes[1][i]:.4g} N, {apart[i]:.4g} N apart when one is negated: leave one "
-                                     'of the sides out of the table and write `sides = "one"`')
+        size, size_of_first, apart = (np.linalg.norm(force, axis=1) for force in (
+            contacts[forces], first[forces], contacts[forces] - first[forces]))
+        allowed = np.maximum(MAX_APART * np.maximum(size, size_of_first), WEAK * pd.Series(size).groupby(contacts.scan).transform("max"))
+        for i in np.flatnonzero(both & other_side & (apart > allowed))[:1]:
+            rows.problem_once("sides", contacts.row[i], "the forces of a contact's two sides must be opposite, got sizes of "
+                              f"{size_of_first[i]:.4g} and {size[i]:.4g} N, {apart[i]:.4g} N apart when one is negated: leave one "
+                              'of the sides out of the table and write `sides = "one"`')
+        return of_pairs.agg({"row": "first", **dict.fromkeys(["x", "y", "z", *forces], "mean")}).reset_index()
 
     def put_points(self, contacts, frames):
         """Contact points that were not measured: midway between the surfaces; on a wall, the foot of the perpendicular."""
         lost = np.flatnonzero(contacts.x.isna())
-        if not len(lost):
-            return contacts
         frame = self.grains.frames_at(contacts.scan[lost])
         position, radius = np.array(self.grains.position), self.grains.diameter / 2
         grain, partner = contacts.grain.values[lost], contacts.partner.values[lost]
@@ -165,10 +146,11 @@ class _Assembly:
         distance = np.linalg.norm(line, axis=1)
         with np.errstate(invalid="ignore", divide="ignore"):
             point = centre + ((radius[grain] + distance - radius[np.maximum(partner, 0)]) / (2 * distance))[:, None] * line
-        for wall in range(6):
+        top = self.plate.z[contacts.scan.values[lost]]
+        for wall, place in enumerate((0, self.known.box[0], 0, self.known.box[1], 0, top)):
             mine = partner == -1 - wall
             point[mine] = centre[mine]
-            point[mine, wall // 2] = (0, self.known.box[0], 0, self.known.box[1], 0, self.plate.z[contacts.scan.values[lost][mine]])[wall]
+            point[mine, wall // 2] = np.broadcast_to(place, len(lost))[mine]
         for i in lost[(frame < 0) | ~np.isfinite(point).all(axis=1)][:1]:
             frames.rows.problem_once("point", contacts.row[i], "a contact must have a point, or its grains a position in its "
                                      "frame, two places, got neither")
@@ -176,25 +158,29 @@ class _Assembly:
         return contacts
 
     def result(self, contacts):
-        plate, grains, first = self.plate, self.grains, self.dropped
-        start = self.known.plate_start if np.isfinite(self.known.plate_start) else float(np.nanmax(plate.z[first:], initial=-np.inf))
-        rows = np.arange(first, len(plate))
-        plate_table = pd.DataFrame({"frame": rows - first, "cycle": plate.cycle[rows] - (plate.cycle[first] if len(rows) else 0),
+        plate, grains, first, start = self.plate, self.grains, self.dropped, self.known.plate_start
+        rows = slice(first, None)
+        if not np.isfinite(start):
+            start = float(np.nanmax(plate.z[rows], initial=-np.inf))
+        plate_table = pd.DataFrame({"frame": np.arange(len(plate.z[rows])), "cycle": plate.cycle[rows] - plate.cycle[first:first + 1],
                                     "phase": np.where(plate.phase[rows] == 0, "load", "unload"), "plate_z_m": plate.z[rows],
                                     "top_force_N": plate.force[rows]})
+        if self.known.programme and np.isfinite(plate.set_force).any():
+            plate_table["set_force_N"] = plate.set_force[rows]
         if self.known.programme:
-            if np.isfinite(plate.set_force).any():
-                plate_table["set_force_N"] = plate.set_force[rows]
             plate_table["time_s"] = plate.time[rows]
-        of_frames = [pd.DataFrame({"frame": row - first, "grain": np.arange(len(position)), **dict(zip(("x_m", "y_m", "z_m"), position.T)),
-                                   "diameter_m": grains.diameter})
-                     for row, position in sorted(zip(grains.row or [], grains.position), key=lambda one: one[0])]
-        grain_table = pd.concat(of_frames) if of_frames else None
+        grain_table = None
+        if grains.keys:
+            frames, count = np.argsort(grains.row), len(grains.diameter)
+            position = np.concatenate([grains.position[frame] for frame in frames])
+            grain_table = pd.DataFrame({"frame": np.repeat(np.sort(grains.row) - first, count),
+                                        "grain": np.tile(np.arange(count), len(frames)), **dict(zip(("x_m", "y_m", "z_m"), position.T)),
+                                        "diameter_m": np.tile(grains.diameter, len(frames))})
         if contacts is not None:
-            contacts = contacts[contacts.scan >= first].sort_values("scan", kind="stable")
-            partner = contacts.partner.map(lambda p: WALLS[-1 - p] if p < 0 else p)
-            contacts = pd.DataFrame({"frame": contacts.scan - first, "grain": contacts.grain, "partner": partner, "x_m": contacts.x,
-                                     "y_m": contacts.y, "z_m": contacts.z, "fx_N": contacts.fx, "fy_N": contacts.fy, "fz_N": contacts.fz})
+            contacts = contacts[contacts.scan >= first].sort_values("scan", kind="stable").drop(columns="row")
+            contacts["partner"] = contacts.partner.map(lambda p: WALLS[-1 - p] if p < 0 else p)
+            contacts["scan"] -= first
+            contacts.columns = ["frame", "grain", "partner", "x_m", "y_m", "z_m", "fx_N", "fy_N", "fz_N"]
         return Imported(plate_table, grain_table, contacts, start, self.notes)
 
 

@@ -7,143 +7,113 @@ import tempfile
 
 import numpy as np
 
+from ..errors import InputError
 from .problems import quoted, to_number
-from .text import Form
+from .text import Form, numbers_of
 
 ITEM = "ITEM: "
-MAX_NUMBERS = 100_000_000
 
 
 def _whole(word):
-    return int(word) if re.fullmatch(r"[+-]?[0-9]{1,18}", word) else None
+    """A whole number >= 0, or None."""
+    return int(word) if re.fullmatch(r"\+?[0-9]{1,18}", word) else None
 
 
-def parse_dump(table, lines, problems):
+def _wrong(table, line, what):
+    raise InputError(f"{table.file}:{line}: {what}")
+
+
+def parse_dump(table, lines):
     """`dump custom` (ITEM: ATOMS) and `dump local` (ITEM: ENTRIES), any number of frames, each with the names of its columns."""
     table.begin("dump", lines, Form(" ", "."))
-    items = [n for n, line in enumerate(lines) if line.startswith(ITEM)] + [len(lines)]
-    first = next(n for n, line in enumerate(lines) if line.strip())
-    if items[0] != first:
-        items.insert(0, first)
+    items = [n for n, line in enumerate(lines, 1) if line.lstrip().startswith(ITEM)] + [len(lines) + 1]
     step = count = names = None
-    for at, end in zip(items, items[1:]):
-        title, line = lines[at].strip(), at + 1
-        what = title.removeprefix(ITEM)
-        value = lines[at + 1].strip() if at + 1 < len(lines) else None
-        if what == title:
-            return problems.add(f"{table.file}:{line}", f'must be a line that begins with "ITEM: ", got {quoted(title)}')
+    for line, end in zip(items, items[1:]):
+        what = lines[line - 1].strip().removeprefix(ITEM)
         if what == "TIMESTEP" or what.startswith("NUMBER OF "):
-            number = None if value is None else _whole(value)
-            if number is None or number < 0:
+            value = "".join(lines[line:line + 1]).strip()
+            count = _whole(value)
+            if count is None:
                 said = "the timestep" if what == "TIMESTEP" else "the number of rows"
-                problems.add(f"{table.file}:{min(line + 1, len(lines))}", f"{said} must be a whole number >= 0, got "
-                             f"{quoted(value or '')}")
+                _wrong(table, min(line + 1, len(lines)), f"{said} must be a whole number >= 0, got {quoted(value)}")
             if what == "TIMESTEP":
-                step, count = number, None
-            else:
-                count = number
+                step, count = count, None
         elif what.startswith(("ATOMS", "ENTRIES")):
-            if step is None:
-                problems.add(f"{table.file}:{line}", '"ITEM: TIMESTEP" must come before, got none')
             columns = what.split()[1:]
+            if step is None:
+                _wrong(table, line, '"ITEM: TIMESTEP" must come before, got none')
             if not columns:
-                problems.add(f"{table.file}:{line}", "the line must name the columns, got none: write the dump with a newer version")
-            elif names is None:
+                _wrong(table, line, "the line must name the columns, got none: write the dump with a newer version")
+            if names is None:
                 names = columns
                 table.name_columns(names, len(names))
-            elif columns != names:
-                problems.add(f"{table.file}:{line}",
-                             f"the columns must be those of the first frame, {' '.join(names)}, got {' '.join(columns)}")
-            if problems.count:
-                return None
+            if columns != names:
+                _wrong(table, line, f"the columns must be those of the first frame, {' '.join(names)}, got {' '.join(columns)}")
             table.frames.append((step, table.rows))
-            _dump_rows(table, at, end, count, problems)
+            for number in range(line + 1, end):
+                cells = lines[number - 1].split()
+                if cells and len(cells) != len(names):
+                    _wrong(table, number, f"must have {len(names)} columns as line {line} says, got {len(cells)}")
+                if cells:
+                    table.add_row(cells, number)
+            found = table.rows - table.frames[-1][1]
+            if count not in (None, found):
+                _wrong(table, line, f"must have the {count} rows that the frame promises, got {found}"
+                       + ("; truncated?" if found < count else ""))
             step = None
-        if problems.full:
-            return None
-    if not table.frames and not problems.count:
-        problems.add(table.file, "must hold at least one frame, got none")
-    return None
-
-
-def _dump_rows(table, at, end, count, problems):
-    found = 0
-    for number in range(at + 1, end):
-        cells = table.lines[number].split()
-        found += bool(cells)
-        if len(cells) == len(table.columns):
-            table.add_row(cells, number + 1)
-        elif cells:
-            problems.add(f"{table.file}:{number + 1}", f"must have {len(table.columns)} columns as line {at + 1} says, got {len(cells)}")
-    if count is not None and found != count and not problems.full:
-        problems.add(f"{table.file}:{at + 1}", f"must have the {count} rows that the frame promises, got {found}"
-                     + ("; truncated?" if found < count else ""))
+    if not table.frames:
+        raise InputError(f"{table.file}: must hold at least one frame, got none")
 
 
 def looks_like_data(lines):
-    counted = False
-    for line in lines[1:2000]:
-        words = line.partition("#")[0].split()
-        counted |= len(words) == 2 and words[1] == "atoms"
-        if counted and words == ["Atoms"]:
-            return True
-    return False
+    words = [line.partition("#")[0].split() for line in lines[1:2000]]
+    return ["Atoms"] in words and any(one[1:] == ["atoms"] for one in words[:words.index(["Atoms"])])
 
 
-def parse_data(table, lines, problems):
+def parse_data(table, lines):
     """LAMMPS data files of the styles sphere and granular: id type diameter density x y z, in the order of the ids."""
-    start = next(n for n, line in enumerate(lines) if line.partition("#")[0].split() == ["Atoms"])
-    promised = next((_whole(line.split()[0]) for line in lines[:start] if line.split()[1:2] == ["atoms"]), None)
+    words_of = [line.partition("#")[0].split() for line in lines]
+    start = words_of.index(["Atoms"], 1) + 1
+    promised = next(_whole(words[0]) for words in words_of[:start] if words[1:] == ["atoms"])
     rows = []
-    for number, line in enumerate(lines[start + 1:], start + 2):
-        words = line.partition("#")[0].split()
-        if not words:
-            continue
-        if words[0][0].isalpha() and len(words) < 7:
+    for number, words in enumerate(words_of[start:], start + 1):
+        if words and words[0][0].isalpha() and len(words) < 7:
             break  # the next section
         values = [to_number(word) for word in words]
-        if len(words) not in (7, 10) or None in values or values[2] <= 0:
-            problems.add(f"{table.file}:{number}", "an atom must have 7 columns (id type diameter density x y z) or 10 (3 image "
-                         f"flags more), numbers with a diameter > 0, got {quoted(' '.join(words))}")
-        else:
-            rows.append(values)
-    if not problems.count and (not rows or promised != len(rows)):
-        problems.add(table.file, f"must have the {promised} atoms that it promises, at least 1, got {len(rows)}; truncated?")
-    if problems.count:
-        return
+        if words and (len(words) not in (7, 10) or None in values or values[2] <= 0):
+            _wrong(table, number, "an atom must have 7 columns (id type diameter density x y z) or 10 (3 image flags more), numbers with "
+                   f"a diameter > 0, got {quoted(' '.join(words))}")
+        if words:
+            rows.append(values[:7])
+    if not rows or promised != len(rows):
+        raise InputError(f"{table.file}: must have the {promised} atoms that it promises, at least 1, got {len(rows)}; truncated?")
     rows = np.array(rows)
-    order = np.argsort(rows[:, 0], kind="stable")
-    if len(np.unique(rows[:, 0])) < len(rows):
-        problems.add(table.file, "each atom must have its own id, got one twice")
+    _, order = np.unique(rows[:, 0], return_index=True)
+    if len(order) < len(rows):
+        raise InputError(f"{table.file}: each atom must have its own id, got one twice")
     table.set_numbers("data", ["x", "y", "z", "diameter"], rows[order][:, [4, 5, 6, 2]])
 
 
-def looks_like_xyz(lines):
-    return len(lines) > 2 and lines[0].strip().isdigit() and "Properties=" in lines[1]
-
-
-def parse_xyz(table, text, problems):
+def parse_xyz(table, text):
     """Extended xyz, frame by frame, read by ASE; vectors become name_x, name_y, name_z."""
     from ase.io import iread
 
-    names = None
-    chunks = []
+    frames, names, rows = [], None, 0
     try:
         for place, atoms in enumerate(iread(io.StringIO(text), format="extxyz", index=":")):
-            fields = {name: np.atleast_2d(values.T).T for name, values in sorted(atoms.arrays.items())
+            fields = {name: values for name, values in sorted(atoms.arrays.items())
                       if name not in ("positions", "numbers") and values.dtype.kind in "if"}
-            columns = _columns(fields)
-            if names not in (None, columns):
-                return problems.add(table.file, f"the fields of all frames must be those of the first, {' '.join(names)}, got "
-                                    f"{' '.join(columns)}")
-            names = columns
+            columns, values = _with_fields(["x", "y", "z"], atoms.positions, fields)
+            names = names or columns
+            if columns != names:
+                raise ValueError(f"the fields of a frame are {' '.join(columns)}, those of the first are {' '.join(names)}")
             step = next((atoms.info[key] for key in ("step", "Step", "timestep", "frame") if key in atoms.info), place)
-            table.frames.append((float(step), sum(map(len, chunks))))
-            chunks.append(np.column_stack([atoms.positions, *fields.values()]))
+            table.frames.append((float(step), rows))
+            frames.append(values)
+            rows += len(values)
     except Exception as error:  # ASE has no exception type for invalid files
-        return problems.add(table.file, f"must be extended xyz that ASE reads, got: {quoted(str(error) or type(error).__name__)}")
-    table.set_numbers("xyz", names, np.concatenate(chunks))
-    return None
+        raise InputError(f"{table.file}: must be extended xyz that ASE reads, got: {quoted(str(error) or type(error).__name__)}") from None
+    table.set_numbers("xyz", names, np.concatenate(frames))
 
 
 def is_mesh(content):
@@ -152,136 +122,93 @@ def is_mesh(content):
         head.startswith(b"# vtk DataFile") and b"DATASET UNSTRUCTURED_GRID" in head)
 
 
-def parse_mesh(table, content, problems):
+def parse_mesh(table, content):
     """VTK's unstructured grids, legacy or XML, read by meshio: a row is a point with its data."""
     import meshio
 
-    ending = ".vtk" if content.startswith(b"#") else ".vtu"
     with tempfile.TemporaryDirectory(prefix="mcdem-") as folder:
-        file = pathlib.Path(folder, "mesh" + ending)
+        file = pathlib.Path(folder, "mesh.vtk" if content.startswith(b"#") else "mesh.vtu")
         file.write_bytes(content)
         try:
             with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
                 mesh = meshio.read(file)
-            fields = {name: np.asarray(values, float).reshape(len(mesh.points), -1) for name, values in mesh.point_data.items()}
-        except SystemExit:  # meshio exits if it cannot read a file
-            return problems.add(table.file, "must be a VTK file that meshio reads, got one that it cannot read")
-        except Exception as error:
-            return problems.add(table.file, f"must be a VTK file that meshio reads, got: {quoted(str(error) or type(error).__name__)}")
-    if not len(mesh.points):
-        return problems.add(table.file, "must hold points, got none")
-    table.set_numbers("vtk", _columns(fields), np.column_stack([mesh.points, *fields.values()]))
-    return None
+            columns, values = _with_fields(["x", "y", "z"], mesh.points, mesh.point_data)
+        except (Exception, SystemExit) as error:  # meshio exits if it cannot read a file
+            raise InputError(f"{table.file}: must be a VTK file that meshio reads, got: "
+                             + quoted(f"{type(error).__name__} {error}")) from None
+    if not len(values):
+        raise InputError(f"{table.file}: must hold points, got none")
+    table.set_numbers("vtk", columns, values)
 
 
-def _columns(fields):
-    """Names of the columns of points with these fields."""
-    return ["x", "y", "z"] + [column for name, values in fields.items() for column in _component_names(name, values.shape[1])]
+def _with_fields(names, values, fields):
+    """Columns and their names with those of each field added: of vectors name_x, name_y, name_z, of tensors name_xx, .."""
+    for name, field in fields.items():
+        field = np.asarray(field, float).reshape(len(values), -1)
+        width = field.shape[1]
+        names = names + ([name] if width == 1 else [
+            f"{name}_{'xyz'[k]}" if width == 3 else f"{name}_{'xyz'[k // 3 % 3]}{'xyz'[k % 3]}" for k in range(width)])
+        values = np.column_stack([values, field])
+    return names, values
 
 
-def _component_names(name, width):
-    if width == 1:
-        return [name]
-    return [f"{name}_{'xyz'[k]}" if width == 3 else f"{name}_{'xyz'[k // 3 % 3]}{'xyz'[k % 3]}" for k in range(width)]
+WIDTHS = {"POINTS": 3, "LINES": 3, "POINT_DATA": 0, "CELL_DATA": 0, "SCALARS": 1, "VECTORS": 3, "TENSORS": 9}  # numbers in a row
 
 
-class _Vtk:
+def _vtk_sections(lines):
+    """Line number, words of the first line and numbers below it, of each section."""
+    sections = []
+    for number, line in enumerate(lines, 1):
+        words = line.split()
+        if words and number > 3 and words[0][0].isalpha() and words[0].isupper():
+            if words[0] != "LOOKUP_TABLE":
+                sections.append((number, words, []))
+        elif sections:
+            sections[-1][2].extend(words)
+    return sections
+
+
+def parse_vtk(table, lines):
     """VTK's legacy format in ASCII with polygonal data, as Yade's VTKExporter writes it, which meshio does not read. A row is a
     point with its data, x y z first; where there are lines, a line with its data, x1 y1 z1 x2 y2 z2 of its two ends first.
     https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html"""
-
-    def __init__(self, table, lines, problems):
-        self.table, self.problems, self.lines, self.at = table, problems, lines, 2
-        self.points, self.ends, self.fields, self.of_cells, self.count, self.points_at = None, None, [], False, 0, 0
-
-    def next(self):
-        while self.at < len(self.lines):
-            self.at += 1
-            if words := self.lines[self.at - 1].split():
-                return words
-        return None
-
-    def wrong(self, what):
-        self.problems.add(f"{self.table.file}:{self.at}", what)
-
-    def size(self, words, place):
-        count = _whole(words[place]) if place < len(words) else None
-        if count is not None and 0 <= count <= MAX_NUMBERS:
-            return count
-        self.wrong(f"a section must say how many there are, up to {MAX_NUMBERS}, got "
-                   f"{quoted(words[place]) if place < len(words) else 'nothing'}")
-        return 0
-
-    def numbers(self, count):
-        """The next `count` numbers, which may span several lines."""
-        words = []
-        while len(words) < count and not self.problems.count:
-            more = self.next()
-            if more is None:
-                self.wrong(f"{count - len(words)} more numbers must follow, got the file's end; truncated?")
-                return np.zeros(0)
-            words += more
-        if len(words) > count:
-            self.wrong(f"a section must end at a line's end, got {len(words) - count} numbers more")
-        return np.array([np.nan if (value := to_number(word)) is None else value for word in words[:count]])
-
-    def section(self, words):
-        kind = words[0]
-        if kind == "DATASET":
-            if words[1:] != ["POLYDATA"]:
-                self.wrong("the data set must be POLYDATA")
-        elif kind == "POINTS":
-            count = self.size(words, 1)
-            self.points_at = self.at
-            self.points = self.numbers(3 * count).reshape(-1, 3)
+    if "".join(lines[2:3]).strip() != "ASCII":
+        _wrong(table, min(3, len(lines)), "the format must be ASCII: write the file as text")
+    first, points, ends, fields, of_points, count = 0, np.zeros((0, 3)), None, {True: {}, False: {}}, True, 0
+    for line, (kind, *words), numbers in _vtk_sections(lines):
+        if kind == "DATASET" and words == ["POLYDATA"]:
+            continue
+        if kind not in WIDTHS or not words:
+            _wrong(table, line, f"must be one of {', '.join(WIDTHS)}, of a data set POLYDATA, got " + quoted(" ".join([kind, *words])))
+        if kind in ("POINTS", "LINES", "POINT_DATA", "CELL_DATA"):
+            count = _whole(words[0])
+            if count is None:
+                _wrong(table, line, f"a section must say how many there are, got {quoted(words[0])}")
+        wanted = WIDTHS[kind] * count
+        if len(numbers) != wanted:
+            _wrong(table, line, f"{wanted} numbers must follow, got {len(numbers)}" + ("; truncated?" if len(numbers) < wanted else ""))
+        values = np.array(numbers_of(numbers, ".")).reshape(-1, max(WIDTHS[kind], 1))
+        if kind == "POINTS":
+            first, points = line, values
         elif kind == "LINES":
-            count = self.size(words, 1)
-            if self.size(words, 2) != 3 * count:
-                return self.wrong("each line must join two points")
-            self.ends = self.numbers(3 * count).reshape(-1, 3)
-        elif kind in ("POINT_DATA", "CELL_DATA"):
-            self.of_cells, self.count = kind == "CELL_DATA", self.size(words, 1)
-        elif kind in ("SCALARS", "VECTORS", "TENSORS") and len(words) > 1:
-            width = {"SCALARS": 1, "VECTORS": 3, "TENSORS": 9}[kind]
-            before = self.at
-            if width == 1 and (self.next() or [""])[0] != "LOOKUP_TABLE":
-                self.at = before
-            self.fields.append((words[1], self.of_cells, self.numbers(self.count * width).reshape(-1, width)))
+            ends = values
+        elif kind.endswith("_DATA"):
+            of_points = kind == "POINT_DATA"
         else:
-            self.wrong("must be one of POINTS, LINES, POINT_DATA, CELL_DATA, SCALARS, VECTORS, TENSORS, got " + quoted(kind))
-        return None
-
-    def rows(self):
-        if self.points is None or not len(self.points):
-            return self.problems.add(self.table.file, "must hold POINTS, got none")
-        names, values = ["x", "y", "z"], self.points
-        if self.ends is not None:
-            ends = self.ends[:, 1:]
-            bad = ~((ends >= 0) & (ends < len(self.points)) & (ends == np.round(ends)))
-            if bad.any():
-                line = int(np.argmax(bad.any(axis=1)))
-                return self.problems.add(self.table.file, f"line {line} must join two of the {len(self.points)} points")
-            values = self.points[ends.astype(int)].reshape(-1, 6)
-            names = [letter + end for end in "12" for letter in "xyz"]
-        for name, of_cells, field in self.fields:
-            if of_cells == (self.ends is not None):
-                if len(field) != len(values):
-                    return self.problems.add(self.table.file, f"{name} must have {len(values)} rows, as the points or lines, got {len(field)}")
-                names = names + _component_names(name, field.shape[1])
-                values = np.column_stack([values, field])
-        lines = range(self.points_at + 1, self.points_at + 1 + len(values))
-        a_line_each = self.ends is None and all(len(self.lines[line - 1].split()) == 3 for line in lines)
-        self.table.set_numbers("vtk", names, values, lines if a_line_each else ())
-        return None
-
-
-def parse_vtk(table, lines, problems):
-    vtk = _Vtk(table, lines, problems)
-    words = vtk.next()
-    if words != ["ASCII"]:
-        return vtk.wrong("the format must be ASCII: write the file as text")
-    while not problems.count and (words := vtk.next()):
-        vtk.section(words)
-    if not problems.count:
-        vtk.rows()
-    return None
+            fields[of_points][words[0]] = values
+    if not len(points):
+        raise InputError(f"{table.file}: must hold POINTS, got none")
+    names, values = ["x", "y", "z"], points
+    if ends is not None:
+        bad = (ends[:, 0] != 2) | ~np.isin(ends[:, 1:], np.arange(len(points))).all(axis=1)
+        if bad.any():
+            raise InputError(f"{table.file}: line {np.argmax(bad)} must join two of the {len(points)} points")
+        values = points[ends[:, 1:].astype(int)].reshape(-1, 6)
+        names = ["x1", "y1", "z1", "x2", "y2", "z2"]
+    for name, field in fields[ends is None].items():
+        if len(field) != len(values):
+            raise InputError(f"{table.file}: {name} must have {len(values)} rows, as the points or lines, got {len(field)}")
+    names, values = _with_fields(names, values, fields[ends is None])
+    rows = range(first + 1, first + 1 + len(values))
+    a_line_each = ends is None and all(len(line.split()) == 3 for line in lines[first:first + len(values)])
+    table.set_numbers("vtk", names, values, rows if a_line_each else ())

@@ -35,22 +35,19 @@ class GrainFrames:
             return np.where((rows >= 0) & (rows < self.plate_rows) & (rows == np.round(rows)), rows, -1).astype(int)
         if by in ("plate", "nearest"):
             return self.plate.find(keys) if by == "plate" else self.plate.nearest(keys)
-        frames = self.index.find(keys)
-        return np.where(frames < 0, -1, np.asarray(self.row)[frames]) if self.row is not None else np.full(len(keys), -1)
+        return np.append(self.row if self.row is not None else np.full(len(self.keys), -1), -1)[self.index.find(keys)]
 
     def frames_of(self, by, keys):
         """The same for frames of the grains. If the rows of the plate are unknown, frames in order are those of the grains."""
         if by == "grains" or (by == "plate" and self.row is None):
             return self.index.find(keys)
         if self.row is None:
-            places = np.arange(len(keys))
-            return np.where(places < len(self.keys), places, -1)
+            return FrameIndex(range(len(self.keys))).find(range(len(keys)))
         return self.frames_at(self.plate_rows_of(by, keys))
 
     def frames_at(self, rows):
         """The first frame at each of these rows of the plate; -1: none."""
-        first = {row: frame for frame, row in reversed(list(enumerate(self.row))) if row >= 0}
-        return np.array([first.get(row, -1) for row in rows], int)
+        return np.where(np.asarray(rows) < 0, -1, FrameIndex(self.row).find(rows))
 
     def place(self, by, plate):
         """Finds the row of the plate for each frame."""
@@ -58,84 +55,66 @@ class GrainFrames:
         self.row = list(self.plate_rows_of(by, self.keys))
 
 
-def _read_columns(rows, mapped):
-    """Number, centre and diameter in each row, and which rows are complete."""
-    unit, size_key = mapped.length_factor(), next((key for key in SIZE_KEYS if key in rows), None)
-    wanted = rows.wanted()
-    centres = np.column_stack([rows.number(key, wanted) for key in "xyz"])
-    sign = np.array([signed_column(mapped.word(key))[0] for key in "xyz"], float)
-    begin = sign * [mapped.number(f"origin_{axis}") for axis in "xyz"]
-    size = rows.number(size_key, wanted) if size_key else np.full(len(rows), mapped.number("same_diameter"))
-    ids = rows.whole_number("grain") if "grain" in rows else None
+def _read_table(table, frames, problems):
+    mapped, rows = table.map, Rows(table, problems)
+    size_key = next((key for key in SIZE_KEYS if key in rows), "same_diameter" if "same_diameter" in mapped else "diameter")
+    first = whole_entry(mapped, "first_grain", problems)
+    if rows.lacks("x", "y", "z", *[size_key] * (size_key in SIZE_KEYS)):
+        return
+    if not len(rows):
+        problems.add(mapped.files[0], "must have rows, one for each grain of a frame: leave a table without any out")
+        return
+    unit, wanted = mapped.length_factor(), rows.wanted()
+    centres = rows.numbers("xyz", wanted)
+    frames.sign = np.array([signed_column(mapped.word(key))[0] for key in "xyz"], float)
+    frames.origin = unit * frames.sign * [mapped.number(f"origin_{axis}") for axis in "xyz"]
+    size = rows.number(size_key, wanted) if size_key in rows else np.full(len(rows), mapped.number(size_key))
+    ids = rows.whole_number("grain") if "grain" in rows else np.zeros(len(rows))
     for i in np.flatnonzero((size <= 0) & wanted)[:1]:
-        rows.problem_once("size", i, f"{size_key or 'same_diameter'} must be > 0, got {number_text(size[i])}")
-    whole = wanted & np.isfinite(centres).all(axis=1) & np.isfinite(size) & (True if ids is None else np.isfinite(ids))
+        rows.problem_once("size", i, f"{size_key} must be > 0, got {number_text(size[i])}")
+    whole = wanted & np.isfinite(centres).all(axis=1) & np.isfinite(size) & np.isfinite(ids)
+    centres = unit * centres - frames.origin
     diameter = unit * (2 * size if size_key == "radius" else np.cbrt(6 * size / np.pi) if size_key == "volume" else size)
-    return ids, unit * (centres - begin), diameter, whole, sign, unit * begin
+    starts = rows.frames()
+    for begin, end in zip(starts, starts[1:]):
+        mine = begin + np.flatnonzero(whole[begin:end])
+        if len(mine):
+            of_frame = ids[mine].astype(int) if "grain" in rows else first + np.arange(len(mine))
+            order = np.argsort(of_frame, kind="stable")
+            _add_frame(frames, rows, mine[order], of_frame[order], centres[mine[order]], diameter[mine[order]])
 
 
-class _Reader:
-    def __init__(self, frames, problems):
-        self.frames, self.problems, self.used = frames, problems, set()
-
-    def read(self, table):
-        mapped, rows = table.map, Rows(table, self.problems)
-        size = next((key for key in SIZE_KEYS if key in rows), "diameter")
-        if any(map(rows.lacks, ["x", "y", "z"] + ([] if "same_diameter" in mapped else [size]))):
-            return None
-        first = whole_entry(mapped, "first_grain", self.problems)
-        if not len(rows):
-            return self.problems.add(mapped.files[0], "must have rows, one for each grain of a frame: leave a table without any out")
-        ids, centres, diameter, whole, self.frames.sign, self.frames.origin = _read_columns(rows, mapped)
-        self.by_place = ids is None
-        starts = rows.frames()
-        for begin, end in zip(starts, starts[1:]):
-            mine = begin + np.flatnonzero(whole[begin:end])
-            if len(mine):
-                of_frame = first + np.arange(len(mine)) if ids is None else ids[mine].astype(int)
-                order = np.argsort(of_frame, kind="stable")
-                self.end_frame(rows, mine[order], of_frame[order], centres[mine[order]], diameter[mine[order]])
-        return None
-
-    def end_frame(self, rows, mine, ids, centres, diameter):
-        frames, key = self.frames, rows.key[mine[0]]
-        shown = number_text(key)
-        twice = np.flatnonzero(np.diff(ids) == 0)
-        if len(twice):
-            rows.problem_once("twice", mine[twice[0] + 1], f"each grain must be there once in frame {shown}, got {ids[twice[0]]} again: "
-                              "see frame in the mapping")
-        if key in self.used:
-            rows.problem_once("sorted", mine[0], f"the rows of frame {shown} must follow one another, got more behind others: sort the table by "
-                              "frame")
-        self.used.add(key)
-        if not frames.keys:
-            frames.ids, first = np.unique(ids, return_index=True)
-            frames.diameter, centres = diameter[first], centres[first]
-        elif not len(twice):
-            others = np.isin(ids, frames.ids, invert=True).sum()
-            if others or len(np.unique(ids)) != len(frames.ids) or len(ids) != len(frames.ids):
-                rows.problem_once("all", mine[0], f"frame {shown} must list the {len(frames.ids)} grains of the first frame, got {len(ids)}, "
-                                  f"of which {others} are other ones: number grains alike in all frames, and leave a frame out where "
-                                  "one is missing")
-            elif self.by_place:
-                self.expect_diameters(rows, mine[0], shown, diameter)
-        frames.keys.append(key)
-        frames.where.append((rows, mine[0]))
-        frames.position.append(centres)
-
-    def expect_diameters(self, rows, row, shown, diameter):
-        """Without numbers, a different order of the rows is detected by their diameters, which may all change by the same factor."""
-        growth = diameter / self.frames.diameter
+def _add_frame(frames, rows, mine, ids, centres, diameter):
+    """The rows `mine` in the order of the ids."""
+    key = rows.key[mine[0]]
+    shown, twice = number_text(key), np.flatnonzero(np.diff(ids) == 0)
+    if len(twice):
+        rows.problem_once("twice", mine[twice[0] + 1], f"each grain must be there once in frame {shown}, got {ids[twice[0]]} again: "
+                          "see frame in the mapping")
+    if key in frames.keys:
+        rows.problem_once("sorted", mine[0], f"the rows of frame {shown} must follow one another, got more behind others: sort the table by "
+                          "frame")
+    if not frames.keys:
+        frames.ids, kept = np.unique(ids, return_index=True)
+        frames.diameter, centres = diameter[kept], centres[kept]
+    elif not len(twice) and not np.array_equal(ids, frames.ids):
+        rows.problem_once("all", mine[0], f"frame {shown} must list the {len(frames.ids)} grains of the first frame, got {len(ids)}, of which "
+                          f"{np.isin(ids, frames.ids, invert=True).sum()} are other ones: number grains alike in all frames, and leave a "
+                          "frame out where one is missing")
+    elif "grain" not in rows:  # a different order of the rows is seen by their diameters, which may all change by the same factor
+        growth = diameter / frames.diameter
         differ = np.mean(np.abs(growth / np.mean(growth) - 1))
         if differ > 0.02:
-            rows.problem_once("diameters", row, "grains without numbers must stand in the same order in all frames, got diameters in frame "
+            rows.problem_once("diameters", mine[0], "grains without numbers must stand in the same order in all frames, got diameters in frame "
                               f"{shown} that differ by {100 * differ:.0f} % from those of the first: number the grains")
+    frames.keys.append(key)
+    frames.where.append((rows, mine[0]))
+    frames.position.append(centres)
 
 
 def import_grains(tables, problems):
     frames = GrainFrames()
-    reader = _Reader(frames, problems)
     for table in tables:
-        reader.read(table)
+        _read_table(table, frames, problems)
     frames.index = FrameIndex(frames.keys)
     return frames

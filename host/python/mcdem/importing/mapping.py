@@ -44,8 +44,11 @@ class Key(NamedTuple):
     words: tuple = ()
 
 
-_LENGTHS, _FORCES = tuple(LENGTH_WORDS), tuple(FORCES)
-_LENGTH_KEYS = [Key("voxel_size", "number", "edge of a voxel [m], where length_unit is voxel")]
+def _length_keys(meaning=""):
+    return [Key("length_unit", "word", meaning, tuple(LENGTH_WORDS)),
+            Key("voxel_size", "number", "edge of a voxel [m], where length_unit is voxel")]
+
+
 _FRAMES_BY = ("plate: frames have the plate's numbers, times or steps; nearest: the row with the nearest time; order: the first is the plate's first row, and so on; rows: "
               "they are the plate's rows, counted from 0")
 KEYS = {
@@ -58,10 +61,9 @@ KEYS = {
         Key("top_force", "quantities", "force on the plate"),
         Key("time", "column", "when the row was measured [s where the column names no unit]; needed where [[programme]] is stated"),
         Key("set_force", "quantity", "the force that was set, in rows where one was; others are empty there"),
-        Key("length_unit", "word", "", _LENGTHS),
-        *_LENGTH_KEYS,
+        *_length_keys(),
         Key("origin_z", "number", "where the floor is, as plate_z's column counts; 0 where left out"),
-        Key("force_unit", "word", "", _FORCES),
+        Key("force_unit", "word", "", tuple(FORCES)),
         Key("force_sign", "word", "+: upward force on the plate is positive; -: negative", ("+", "-")),
     ],
     "grains": [
@@ -77,8 +79,7 @@ KEYS = {
         Key("radius", "column", "this, diameter or volume"),
         Key("volume", "column", "this, diameter or radius: of a sphere, in cubes of length_unit"),
         Key("same_diameter", "number", "of all grains, in the table's unit, where no column has it"),
-        Key("length_unit", "word", "", _LENGTHS),
-        *_LENGTH_KEYS,
+        *_length_keys(),
         Key("origin_x", "number", "where the wall x_min stands, in the table's unit, as x's column counts"),
         Key("origin_y", "number", "where the wall y_min stands"),
         Key("origin_z", "number", "where the floor is"),
@@ -100,9 +101,8 @@ KEYS = {
         Key("force", "quantities", "in place of fx, fy, fz: size of a force along the line of centres, > 0 where it pushes"),
         Key("force_on", "word", "on which of the two the force is", ("grain", "partner")),
         Key("sides", "word", "both: each contact is listed from either side, and the mean counts", ("one", "both")),
-        Key("length_unit", "word", "of contact points", _LENGTHS),
-        *_LENGTH_KEYS,
-        Key("force_unit", "word", "", _FORCES),
+        *_length_keys("of contact points"),
+        Key("force_unit", "word", "", tuple(FORCES)),
     ],
     "unused": [],
 }
@@ -145,9 +145,9 @@ class MappedTable:
     def number(self, key):
         return to_number(self.word(key, "0")) or 0.0
 
-    def length_factor(self, otherwise="m"):
+    def length_factor(self):
         """Length of the table's unit in metres."""
-        unit = self.word("length_unit", otherwise)
+        unit = self.word("length_unit", "m")
         return self.number("voxel_size") if unit == VOXEL else LENGTHS[unit]
 
     def force_factor(self):
@@ -160,14 +160,12 @@ class MappedTable:
 
 def must_be_stated(table):
     """Units and signs that are required for the table's columns."""
-    def has(*keys):
-        return any(key in table for key in keys)
-
-    needed = {"length_unit": has("plate_z", "displacement", "x", "y", "z", *SIZE_KEYS, "same_diameter"),
+    keys = table.entries.keys()
+    needed = {"length_unit": keys & {"plate_z", "displacement", "x", "y", "z", *SIZE_KEYS, "same_diameter"},
               "voxel_size": table.word("length_unit") == VOXEL,
-              "force_unit": has("top_force", "force", "fx", "fy", "fz"),
-              "force_sign": table.role == "plate" and has("top_force"),
-              "force_on": table.role == "contacts" and has("fx", "fy", "fz")}
+              "force_unit": keys & {"top_force", "force", "fx", "fy", "fz"},
+              "force_sign": table.role == "plate" and "top_force" in keys,
+              "force_on": table.role == "contacts" and keys & {"fx", "fy", "fz"}}
     return [key for key, is_needed in needed.items() if is_needed]
 
 
@@ -189,7 +187,6 @@ INTRODUCTION = """\
 # An entry that begins with a question mark is not safe: put in what is right, without the question mark, and import
 # again with --mapping. Columns go by their names, or as "column 3"; where several are listed they are added up.
 """
-UNCLEAR_MARK = "  # unclear: "
 
 
 def _one_line(text):
@@ -197,25 +194,20 @@ def _one_line(text):
 
 
 def _line_text(key, of, meaning):
-    words = list(of.words)
-    if of.certainty == UNCLEAR:
-        words[0] = "?" + words[0]
+    mark = "?" if of.certainty == UNCLEAR else ""
+    words = [mark + of.word, *of.words[1:]]
     text = f"{key} = {toml_value(words[0] if len(words) == 1 else words)}"
     if of.certainty != "stated":
-        text += f"  # {of.certainty}: {_one_line(of.why)}"
-    if of.certainty == UNCLEAR and meaning:
-        text += f" ({meaning})"
+        text += f"  # {of.certainty}: {_one_line(of.why)}" + (f" ({meaning})" if mark and meaning else "")
     return text + "\n"
 
 
-def _meaning(key):
-    words = "one of " + ", ".join(key.words) if key.words else ""
-    return words + ("; " if words and key.meaning else "") + key.meaning
+def meaning_of(key):
+    return "; ".join(filter(None, ["one of " + ", ".join(key.words) if key.words else "", key.meaning]))
 
 
 def _table_text(table):
-    text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_certainty, table.role_why),
-                                        "one of plate, grains, contacts, unused")
+    text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_certainty, table.role_why), "one of " + ", ".join(KEYS))
     text += f"files = {toml_value(table.files)}\n"
     if table.form:
         separator = {"\t": "tab", " ": "blanks"}.get(table.form.separator, table.form.separator)
@@ -225,7 +217,8 @@ def _table_text(table):
     if table.unused:
         text += f"# columns not used: {_one_line(', '.join(table.unused))}\n"
     for key in KEYS[table.role]:
-        text += _line_text(key.name, table[key.name], _meaning(key)) if key.name in table else f"# {key.name} =  # {_meaning(key)}\n"
+        meaning = meaning_of(key)
+        text += _line_text(key.name, table[key.name], meaning) if key.name in table else f"# {key.name} =  # {meaning}\n"
     if table.walls:
         text += "[table.walls]  # what the table calls a wall, and which it is\n"
         for word, of in sorted(table.walls.items()):
@@ -240,10 +233,5 @@ def mapping_text(tables):
 
 def unclear_entries(text, file):
     """The lines that must be confirmed, each as a problem with the possible values."""
-    problems = []
-    for number, line in enumerate(text.split("\n"), 1):
-        key, equals, rest = line.partition(" = ")
-        value, mark, why = rest.rpartition(UNCLEAR_MARK)
-        if equals and mark and not line.startswith("#"):
-            problems.append(f"{file}:{number}: {key} must be confirmed, got {value}: {why}")
-    return problems
+    lines = [re.fullmatch(f"([^#].*?) = (.*)  # {UNCLEAR}: (.*)", line) for line in text.split("\n")]
+    return [f"{file}:{number}: {line[1]} must be confirmed, got {line[2]}: {line[3]}" for number, line in enumerate(lines, 1) if line]

@@ -39,12 +39,6 @@ def _phases(z):
     return phase
 
 
-def _check_order(rows, keys):
-    for i in 1 + np.flatnonzero(~(np.diff(keys) > 0))[:1]:
-        rows.problem_once("order", i, f"frame must rise from row to row, got {number_text(keys[i])} after {number_text(keys[i - 1])}: "
-                          "repair the table, or leave frame out of the mapping where frames_by is order")
-
-
 def check_heights(plate, start, first):
     """Heights of the rows from `first` on."""
     if not len(plate) or not np.isfinite(plate.z[first:]).any():
@@ -65,10 +59,9 @@ def _read_phases(rows, plate, problems):
     if "phase" in rows:
         for i in range(len(rows)):
             text = rows.text(i, "phase")
-            phase = PHASES.get(column_name(text).base)
-            if phase is None:
+            plate.phase[i] = PHASES.get(column_name(text).base, -1)
+            if plate.phase[i] < 0:
                 rows.problem(i, f"phase must be load or unload, got {quoted(text)}")
-            plate.phase[i] = phase or LOAD
     elif not problems.count:
         plate.phase = _phases(plate.z)
     if "cycle" in rows:
@@ -76,36 +69,29 @@ def _read_phases(rows, plate, problems):
         plate.cycle = (cycle - cycle[0]).astype(int)  # many tables count from 1
         for i in 1 + np.flatnonzero(np.diff(plate.cycle) < 0)[:1]:
             rows.problem_once("cycle", i, "cycle must not fall: sort the rows by time")
-    elif not problems.count:
+    else:
         plate.cycle = np.cumsum(np.diff(plate.phase, prepend=LOAD) == LOAD - UNLOAD)
-
-
-def _read_programme(rows, mapped, plate, sign):
-    """Times, and prescribed forces if there are any."""
-    plate.time = rows.number("time") * TIMES.get(column_name(mapped.word("time")).unit, 1)
-    if "set_force" in rows:
-        stated = rows.stated("set_force")
-        plate.set_force = np.where(stated, rows.number("set_force", stated) * mapped.force_factor() * sign, np.nan)
 
 
 def import_plate(table, start, problems, programme=False):
     """Heights require `start` [m] (NaN if unknown) if the table contains displacements. Rows of a programme require
     times."""
     mapped, rows = table.map, Rows(table, problems)
-    goes_down = "displacement" in rows
-    if any(map(rows.lacks, ("top_force", "displacement" if goes_down else "plate_z", *(("time",) if programme else ())))):
+    height = "displacement" if "displacement" in rows else "plate_z"
+    if rows.lacks("top_force", height, *["time"] * programme) or not len(rows):
         return PlateRows()
     keys = rows.key if rows.keyed else np.arange(len(rows), dtype=float)
-    place = rows.number("displacement" if goes_down else "plate_z")
-    sign = -1 if mapped.word("force_sign", "+") == "-" else 1
-    force = rows.number("top_force") * mapped.force_factor() * sign
-    origin = mapped.number("origin_z") * signed_column(mapped.word("plate_z"))[0]
-    z = start - mapped.length_factor() * place if goes_down else mapped.length_factor() * (place - origin)
-    plate = PlateRows(z, force, keys, rows)
-    if not len(plate):
-        return plate
-    _check_order(rows, keys)
+    floor = mapped.number("origin_z") * signed_column(mapped.word("plate_z"))[0] if height == "plate_z" else 0
+    z = mapped.length_factor() * (rows.number(height) - floor)
+    force_unit = mapped.force_factor() * (-1 if mapped.word("force_sign") == "-" else 1)
+    plate = PlateRows(z if height == "plate_z" else start - z, force_unit * rows.number("top_force"), keys, rows)
+    for i in 1 + np.flatnonzero(~(np.diff(keys) > 0))[:1]:
+        rows.problem_once("order", i, f"frame must rise from row to row, got {number_text(keys[i])} after {number_text(keys[i - 1])}: "
+                          "repair the table, or leave frame out of the mapping where frames_by is order")
     if programme:
-        _read_programme(rows, mapped, plate, sign)
+        plate.time = rows.number("time") * TIMES.get(column_name(mapped.word("time")).unit, 1)
+    if programme and "set_force" in rows:
+        stated = rows.stated("set_force")
+        plate.set_force = np.where(stated, force_unit * rows.number("set_force", stated), np.nan)
     _read_phases(rows, plate, problems)
     return plate

@@ -13,9 +13,9 @@ class Problems:
         self.first, self.told, self.count = [], set(), 0  # told: topics of which one problem is enough
 
     def add(self, where, what):
-        """`where` is a file, or file:line, or a function that finds it."""
-        if len(self.first) < MAX_TOLD:
-            self.first.append(f"{where() if callable(where) else where}: {what}")
+        """`where` is a file, or file:line."""
+        if not self.full:
+            self.first.append(f"{where}: {what}")
         self.count += 1
 
     @property
@@ -23,8 +23,7 @@ class Problems:
         return self.count >= MAX_TOLD
 
     def lines(self):
-        more = self.count - len(self.first)
-        return self.first + ([f".. and {more} more"] if more else [])
+        return self.first + [f".. and {self.count - MAX_TOLD} more"] * (self.count > MAX_TOLD)
 
     def report(self):
         if self.count:

@@ -3,6 +3,7 @@ import os
 import re
 
 import numpy as np
+import pandas as pd
 
 from .mapping import columns_of, signed_column
 from .names import TIMES, column_name
@@ -35,19 +36,14 @@ def whole_entry(mapped, key, problems):
     return 0
 
 
-def _number_in_name(file):
-    """The last number in a file's name without its extensions: 3 for "scan2/grains_003.csv.gz"."""
-    stem = os.path.splitext(os.path.basename(file).removesuffix(".gz"))[0]
-    digits = re.findall(r"[0-9]+", stem)
-    return float(digits[-1]) if digits else None
-
-
 def _keys_of_files(parts):
-    """The numbers in the files' names if all have one and they increase; otherwise their positions."""
-    numbers = [_number_in_name(part.file) for part in parts]
-    if len(parts) > 1 and None not in numbers and all(a < b for a, b in zip(numbers, numbers[1:])):
+    """The last numbers in the files' names without extensions, 3 for "scan2/grains_003.csv.gz", if all have one and they increase;
+    otherwise the files' positions."""
+    stems = [os.path.splitext(os.path.basename(part.file).removesuffix(".gz"))[0] for part in parts]
+    numbers = [float(re.findall("[0-9]+", stem)[-1]) for stem in stems if re.search("[0-9]", stem)]
+    if len(parts) > 1 and len(numbers) == len(parts) and (np.diff(numbers) > 0).all():
         return numbers, "file"
-    return list(range(len(parts))), "place"
+    return range(len(parts)), "place"
 
 
 class Rows:
@@ -56,33 +52,37 @@ class Rows:
 
     def __init__(self, table, problems, most=None):
         self.map, self.parts, self.problems = table.map, table.parts, problems
-        self.columns = {}  # by key: signs and columns of each part
-        before = problems.count
-        self._find_columns()
-        whole = problems.count == before
-        counts = [(part.rows if most is None else min(part.rows, most)) if whole else 0 for part in self.parts]
-        self.part = np.repeat(np.arange(len(counts)), counts)
-        self.row = np.concatenate([np.arange(n) for n in counts]) if counts else np.zeros(0, int)
+        # By key: for each of its columns the sign, and the position in each part.
+        self.columns = {key: [(sign, [self._find(part, name, key) for part in self.parts]) for sign, name in map(signed_column, words)]
+                        for key, words in columns_of(self.map)}
+        found = all(None not in places for columns in self.columns.values() for _, places in columns)
+        self.counts = [part.rows if most is None else min(part.rows, most) for part in self.parts] if found else [0] * len(self.parts)
         keys, self.keyed_by = _keys_of_files(self.parts)
-        self.key = np.concatenate([np.full(n, float(key)) for n, key in zip(counts, keys)]) if counts else np.zeros(0)
+        frames = [part.frames or [(key, 0)] for part, key in zip(self.parts, keys)]
+        self.part = np.repeat(np.arange(len(self.parts)), self.counts)
+        self.row = np.concatenate([np.zeros(0, int), *map(np.arange, self.counts)])
+        self.at = np.arange(len(self.row))  # before rows were left out or sorted
+        self.key = np.concatenate([np.zeros(0), *(np.array([step for step, _ in of], float)[
+            np.searchsorted([first for _, first in of], np.arange(n), "right") - 1] for of, n in zip(frames, self.counts))])
         if "frame" in self.columns:
             self.keyed_by = "column"
             unit = TIMES.get(column_name(self.map.word("frame")).unit, 1)
             stated = self.stated("frame")
             self.key = np.where(stated, unit * self.number("frame", stated), np.nan)
-            known = np.isfinite(self.key)
-            self._keep(known)
+            self._keep(np.isfinite(self.key))
             if self.map.role != "plate" and len(self.frames()) - 1 > len(np.unique(self.key)):  # sorted by grain, not by frame
                 self._keep(np.argsort(self.key, kind="stable"))
         elif any(part.frames for part in self.parts):
             self.keyed_by = "step"
-            for number, part in enumerate(self.parts):
-                mine = self.part == number
-                steps, first = zip(*part.frames) if part.frames else ((keys[number],), (0,))
-                self.key[mine] = np.array(steps, float)[np.searchsorted(first, self.row[mine], "right") - 1]
+
+    def _find(self, part, name, key):
+        column = part.find(name)
+        if column is None:
+            self.problems.add(part.file, f"must have the column {quoted(name)} that the mapping names for {key}, got {', '.join(part.columns)}")
+        return column
 
     def _keep(self, which):
-        self.part, self.row, self.key = self.part[which], self.row[which], self.key[which]
+        self.part, self.row, self.at, self.key = self.part[which], self.row[which], self.at[which], self.key[which]
 
     @property
     def keyed(self):
@@ -92,11 +92,12 @@ class Rows:
     def __len__(self):
         return len(self.row)
 
-    def lacks(self, key):
-        """Whether the mapping names no column for the key, which is a problem."""
-        if key not in self:
+    def lacks(self, *keys):
+        """Whether the mapping names no column for one of the keys, which is a problem."""
+        missing = [key for key in keys if key not in self]
+        for key in missing:
             self.problems.add(self.map.files[0], f"must have a column for {key}, got none: name it in the mapping")
-        return key not in self
+        return bool(missing)
 
     def wanted(self):
         """Whether a row counts, by the column for `where`."""
@@ -105,46 +106,36 @@ class Rows:
     def __contains__(self, key):
         return key in self.columns
 
-    def _find_columns(self):
-        for key, words in columns_of(self.map):
-            of_parts = self.columns[key] = []
-            for part in self.parts:
-                found = [(sign, part.find(name)) for sign, name in map(signed_column, words)]
-                of_parts.append(found)
-                for (_, column), word in zip(found, words):
-                    if column is None:
-                        self.problems.add(part.file, f"must have the column {quoted(signed_column(word)[1])} that the mapping names for "
-                                          f"{key}, got {', '.join(part.columns)}")
-
-    def each_part(self, key):
-        """Each part with its rows, their positions among all rows, and its columns of that key."""
-        for number, part in enumerate(self.parts):
-            mine = np.flatnonzero(self.part == number)
-            if len(mine):
-                yield part, self.row[mine], mine, self.columns[key][number]
+    def cells(self, key, column=0):
+        """Numbers in one of the key's columns, NaN where a cell is none."""
+        places = self.columns[key][column][1]
+        parts = [part.numbers(place)[:n] for part, place, n in zip(self.parts, places, self.counts) if n]
+        return np.concatenate([np.zeros(0), *parts])[self.at]
 
     def stated(self, key):
         """Whether the cells are not empty: a trigger has numbers in some rows only."""
-        stated = np.ones(len(self), bool)
-        for part, rows, mine, ((_, column), *_) in self.each_part(key):
-            for i in np.flatnonzero(np.isnan(part.numbers(column)[rows])) if column is not None else ():
-                stated[mine[i]] = part.text(rows[i], column).strip() != ""
+        stated = np.isfinite(self.cells(key))
+        for i in np.flatnonzero(~stated):
+            stated[i] = self.text(i, key).strip() != ""
         return stated
 
-    def number(self, key, of=None):
+    def number(self, key, of=True):
         """The entry's value in each row, the sum of several columns. NaN is a problem in the rows `of`."""
         values = np.zeros(len(self))
-        for part, rows, mine, columns in self.each_part(key):
-            for sign, column in columns:
-                numbers = part.numbers(column)[rows]
-                wrong = np.isnan(numbers) if of is None else np.isnan(numbers) & of[mine]
-                for row in rows[wrong] if wrong.any() else ():
-                    self.problems.add(lambda part=part, row=row: part.where(row), f"{part.columns[column]} must be a finite number, got "
-                                      f"{quoted(part.text(row, column))}: leave out what was not measured: a row of the plate, a contact, or the whole frame of grains")
-                    if self.problems.full:
-                        break
-                values[mine] += sign * numbers
+        for column, (sign, places) in enumerate(self.columns[key]):
+            numbers = self.cells(key, column)
+            for i in np.flatnonzero(np.isnan(numbers) & of):
+                if self.problems.full:
+                    break
+                name = self.parts[self.part[i]].columns[places[self.part[i]]]
+                self.problem(i, f"{name} must be a finite number, got {quoted(self.text(i, key, column))}: leave out what was not measured: a "
+                             "row of the plate, a contact, or the whole frame of grains")
+            values += sign * numbers
         return values
+
+    def numbers(self, keys, of=True):
+        """One column for each of the keys."""
+        return np.column_stack([self.number(key, of) for key in keys])
 
     def whole_number(self, key):
         values = self.number(key)
@@ -153,15 +144,11 @@ class Rows:
             values[i] = np.nan
         return values
 
-    def text(self, i, key):
-        part = self.parts[self.part[i]]
-        return part.text(self.row[i], self.columns[key][self.part[i]][0][1])
-
-    def where(self, i):
-        return self.parts[self.part[i]].where(self.row[i])
+    def text(self, i, key, column=0):
+        return self.parts[self.part[i]].text(self.row[i], self.columns[key][column][1][self.part[i]])
 
     def problem(self, i, what):
-        self.problems.add(lambda: self.where(i), what)
+        self.problems.add(self.parts[self.part[i]].where(self.row[i]), what)
 
     def problem_once(self, topic, i, what):
         """Adds only one problem for each topic and file: a column in millimetres is one problem, not one for each line."""
@@ -172,37 +159,26 @@ class Rows:
 
     def frames(self):
         """First row of each frame, and the end of the last one: a frame is a sequence of rows with the same key."""
-        changes = np.flatnonzero(np.diff(self.key)) + 1
-        return np.concatenate([[0], changes, [len(self)]]) if len(self) else np.zeros(1, int)
+        return np.unique([0, *(np.flatnonzero(np.diff(self.key)) + 1), len(self)])
 
 
 class FrameIndex:
-    """Finds frames. Times may differ by a thousandth of the shortest interval."""
+    """Finds frames by their keys, the first one of equal keys. Times may differ by a thousandth of the shortest interval."""
 
     def __init__(self, keys=()):
-        keys = np.asarray(keys, float)
-        self.order = np.argsort(keys, kind="stable")
-        self.sorted = keys[self.order]
-        steps = np.diff(self.sorted)
-        steps = steps[steps > 0]
-        self.tolerance = 1e-3 * steps.min() if len(steps) else 1e-9 * abs(self.sorted[0]) if len(keys) else 0.0
+        self.keys, self.first = np.unique(np.asarray(keys, float), return_index=True)
+        self.tolerance = 1e-3 * np.diff(self.keys).min() if len(self.keys) > 1 else 1e-9 * np.abs(self.keys).sum()
+
+    def _find(self, keys, tolerance):
+        return np.append(self.first, -1)[pd.Index(self.keys).get_indexer(np.asarray(keys, float), "nearest", tolerance=tolerance)]
 
     def nearest(self, keys):
         """Positions of the nearest ones; -1 if there would have been a nearer one before the first or after the last."""
-        keys = np.asarray(keys, float)
-        if len(self.sorted) < 2:
+        if len(self.keys) < 2:
             return self.find(keys)
-        right = np.clip(np.searchsorted(self.sorted, keys), 1, len(self.sorted) - 1)
-        is_left = keys - self.sorted[right - 1] <= self.sorted[right] - keys
-        first, last = self.sorted[[0, -1]] - np.diff(self.sorted)[[0, -1]] * [0.5, -0.5]
-        inside = (keys >= first) & (keys <= last)
-        return np.where(inside, self.order[np.where(is_left, right - 1, right)], -1)
+        first, last = self.keys[[0, -1]] - np.diff(self.keys)[[0, -1]] * [0.5, -0.5]
+        return np.where((keys >= first) & (keys <= last), self._find(keys, None), -1)
 
     def find(self, keys):
         """Positions; -1 if there is none."""
-        keys = np.asarray(keys, float)
-        if not len(self.sorted):
-            return np.full(keys.shape, -1)
-        at = np.minimum(np.searchsorted(self.sorted, keys - self.tolerance), len(self.sorted) - 1)
-        near = np.abs(self.sorted[at] - keys) <= self.tolerance * (1 + 1e-12)
-        return np.where(near, self.order[at], -1)
+        return self._find(keys, self.tolerance * (1 + 1e-12))

@@ -1,4 +1,5 @@
 """Reads tables of other programs and laboratories as named columns; their meaning and units are determined later."""
+import array
 import gzip
 import os
 import zlib
@@ -8,10 +9,9 @@ import numpy as np
 from ..errors import InputError
 from . import formats
 from .problems import Problems, number_text
-from .text import Form, cell_number, cut, parse_text
+from .text import Form, cut, numbers_of, parse_text
 
 LARGEST = 1 << 30  # maximum size of a table in bytes, uncompressed
-CHUNK = 20_000  # rows that are kept as text at a time
 
 
 class Table:
@@ -22,8 +22,13 @@ class Table:
         self.named, self.columns = False, []  # whether the file has names of columns; otherwise they are "column 1", ..
         self.repeated = set()  # names that several columns have
         self.frames = []  # of a dump: (timestep, first row)
+        self._places = {}  # of columns by their names
         self.line_of = []  # of each row, from 1; empty if rows are not lines
-        self.rows, self._pending, self._chunks = 0, [], []
+        self._values = array.array("d")  # row by row; NaN: not a finite number
+
+    @property
+    def rows(self):
+        return len(self._values) // max(len(self.columns), 1)
 
     def begin(self, format_, lines, form):
         self.format, self.lines, self.form = format_, lines, form
@@ -31,64 +36,38 @@ class Table:
     def name_columns(self, names, count):
         """Replaces names by the column's number if they are missing, repeated, or begin with a question mark or a minus, which a
         mapping uses for unconfirmed values and reversed columns."""
-        taken = set()
-        self.columns = []
-        for i in range(count):
-            name = names[i].strip(" \t\r") if i < len(names) else ""
-            if name in taken:
+        self.columns, self.repeated = [], set()
+        for i, name in enumerate([*names, *[""] * count][:count]):
+            name = name.strip(" \t\r")
+            if name in self._places:
                 self.repeated.add(name)
-            if not name or name[0] in "?-" or name in taken:
+            if not name or name[0] in "?-" or name in self._places:
                 name = f"column {i + 1}"
-            taken.add(name)
+            self._places[name] = i
             self.columns.append(name)
         self.named = bool(names)
 
     def add_row(self, cells, line):
-        self._pending.append(cells)
+        self._values.extend(numbers_of(cells, self.form.decimal))
         self.line_of.append(line)
-        self.rows += 1
-        if len(self._pending) == CHUNK:
-            self._convert()
 
     def set_numbers(self, format_, columns, values, line_of=()):
         self.begin(format_, self.lines, Form(" ", "."))
         self.name_columns(columns, len(columns))
-        self._chunks = [np.asarray(values, float).reshape(-1, len(columns))]
-        self.rows, self.line_of = len(self._chunks[0]), list(line_of)
-
-    def _convert(self):
-        decimal, columns = self.form.decimal, []
-        for cells in zip(*self._pending):
-            try:
-                if any("_" in cell or not cell.isascii() for cell in cells):  # Python accepts 1_000 as a number
-                    raise ValueError
-                columns.append(list(map(float, (cell.replace(",", ".") for cell in cells) if decimal == "," else cells)))
-            except ValueError:
-                columns.append([np.nan if (value := cell_number(cell, decimal)) is None else value for cell in cells])
-        self._chunks.append(np.array(columns, float).T.reshape(len(self._pending), -1))
-        self._pending = []
+        self._values, self.line_of = np.where(np.isfinite(values), values, np.nan).ravel(), list(line_of)
 
     def numbers(self, column):
         """NaN if the cell is not a finite number."""
-        if self._pending:
-            self._convert()
-        if len(self._chunks) > 1:
-            self._chunks = [np.concatenate(self._chunks)]
-        values = self._chunks[0][:, column] if self._chunks else np.empty(0)
-        return np.where(np.isfinite(values), values, np.nan)
+        return np.asarray(self._values)[column::len(self.columns)]
 
     def text(self, row, column):
         if not self.lines:
-            return number_text(self._chunks[0][row, column])
+            return number_text(self.numbers(column)[row])
         return cut(self.lines[self.line_of[row] - 1], self.form.separator)[column]
 
     def find(self, name):
-        if name in self.columns:
-            return self.columns.index(name)
-        number = name.removeprefix("column ")
-        if number != name and number.isascii() and number.isdigit() and 1 <= int(number[:9]) <= len(self.columns):
-            return int(number[:9]) - 1
-        return None
+        """Position of a column by its name or as "column 3"; None if there is none."""
+        return self._places.get(name, {f"column {i + 1}": i for i in range(len(self.columns))}.get(name))
 
     def where(self, row):
         return f"{self.file}:{self.line_of[row]}" if self.line_of else self.file
@@ -114,28 +93,24 @@ def _bytes_of(file):
 def parse_table(content, file, form=None):
     """`form` overrides the guess of the text format."""
     table, problems = Table(file), Problems()
-    if formats.is_mesh(content):
-        formats.parse_mesh(table, content, problems)
-        problems.report()
-        return table
     content = content.removeprefix(b"\xef\xbb\xbf")
     try:
         text = content.decode()
     except UnicodeDecodeError:
         text = content.decode("latin-1")  # written by European spreadsheets instead of UTF-8
-    lines = [line.removesuffix("\r") for line in text.split("\n")]
-    if lines[-1] == "":
-        lines.pop()
-    if "\0" in text:
+    lines = [line.removesuffix("\r") for line in text.removesuffix("\n").split("\n")]
+    if formats.is_mesh(content):
+        formats.parse_mesh(table, content)
+    elif "\0" in text:
         problems.add(file, "must be text, got zero bytes: save it as text in UTF-8")
-    elif text[:1000].lstrip(" \t\r").startswith("ITEM: "):
-        formats.parse_dump(table, lines, problems)
+    elif text[:1000].lstrip(" \t\r").startswith(formats.ITEM):
+        formats.parse_dump(table, lines)
     elif text.startswith("# vtk DataFile"):
-        formats.parse_vtk(table, lines, problems)
+        formats.parse_vtk(table, lines)
     elif formats.looks_like_data(lines):
-        formats.parse_data(table, lines, problems)
-    elif formats.looks_like_xyz(lines):
-        formats.parse_xyz(table, text, problems)
+        formats.parse_data(table, lines)
+    elif len(lines) > 2 and lines[0].strip().isdigit() and "Properties=" in lines[1]:
+        formats.parse_xyz(table, text)
     else:
         parse_text(table, lines, form, problems)
     problems.report()

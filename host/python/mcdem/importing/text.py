@@ -4,6 +4,7 @@ What comes before the first row with a number in it may name the columns, and in
 `#format` line, and a line of words behind a # where nothing else does, name them too.
 """
 import itertools
+import math
 import re
 from collections import Counter
 from typing import NamedTuple
@@ -23,8 +24,7 @@ class Form(NamedTuple):
     decimal: str = "."
 
 
-# In order of preference among equally good ones.
-FORMS = [Form(";", "."), Form(";", ","), Form("\t", "."), Form("\t", ","), Form(",", "."), Form(",", ","), Form(" ", "."), Form(" ", ",")]
+FORMS = list(itertools.starmap(Form, itertools.product(";\t, ", ".,")))  # in order of preference among equally good ones
 
 
 def cut(line, separator):
@@ -39,9 +39,15 @@ def cut(line, separator):
 
 
 def cell_number(cell, decimal):
+    """A finite number, or None."""
     if decimal == "." or "," not in cell:
         return to_number(cell)
     return to_number(cell.replace(",", ".", 1)) if "." not in cell and len(cell) <= 64 else None
+
+
+def numbers_of(cells, decimal):
+    """NaN where a cell is not a finite number."""
+    return [math.nan if (number := cell_number(cell, decimal)) is None else number for cell in cells]
 
 
 def _numbers_in(cells, decimal):
@@ -55,8 +61,7 @@ def sample(lines):
 
 def _usual_width(rows):
     """The most frequent number of cells; the largest one in a tie."""
-    counts = Counter(map(len, rows))
-    return max(counts, key=lambda width: (counts[width], width))
+    return max(((count, width) for width, count in Counter(map(len, rows)).items()), default=(0, 0))[1]
 
 
 def _merit(lines, form):
@@ -79,59 +84,27 @@ def _kind(cell):
     return "nothing" if cell in NOTHING else "word"
 
 
-def _lines_above_names(rows, width):
-    """Number of header lines above the last line that contains only words, the names of the columns, if each of them has a word in a
-    column that contains only numbers below: `Vorkraft;0,5;N` is not a row of `Zeit;Weg;Kraft`."""
-    numeric = [True] * width
-    for names in range(len(rows), 0, -1):
-        kinds = [_kind(cell) for cell in rows[names - 1]]
-        if "word" in kinds and "number" not in kinds:
-            break
-        for c, kind in enumerate(kinds[:width]):
-            numeric[c] &= kind != "word"
-    else:
-        return 0
-    if names == len(rows) or len(rows[names - 1]) < width:
-        return 0
-    for cells in rows[:names - 1]:
-        kinds = [_kind(cell) for cell in cells]
-        if len(cells) >= width and "number" in kinds and not any(n and k == "word" for n, k in zip(numeric, kinds)):
-            return 0
-    return names - 1
-
-
 def _lines_above(lines, separator):
-    """Number of lines with words before the first line with the usual number of cells: `Probe;17` is not a row."""
-    rows = [cut(line, separator) for line in sample(lines)]
-    if not rows:
-        return 0
+    """Number of header lines that are no rows although they may hold numbers. They end above the names of the columns, the last line
+    with only words, if each of them has a word in a column of numbers: `Vorkraft;0,5;N` is not a row of `Zeit;Weg;Kraft`. Otherwise
+    they are the lines with words before the first line with the usual number of cells: `Probe;17` is not a row."""
+    rows = [[_kind(cell) for cell in cut(line, separator)] for line in sample(lines)]
     width = _usual_width(rows)
-    if above := _lines_above_names(rows, width):
-        return above
-    for above, cells in enumerate(rows):
-        if len(cells) == width or not any(_kind(cell) == "word" for cell in cells):
-            return above
-    return len(rows)
+    names = max((n for n, row in enumerate(rows) if "word" in row and "number" not in row), default=0)
+    if len(rows) > names + 1 and names and len(rows[names]) >= width:
+        worded = {c for row in rows[names + 1:] for c, kind in enumerate(row) if kind == "word"}
+        if all(len(row) < width or "number" not in row or any(kind == "word" and c not in worded for c, kind in enumerate(row[:width]))
+               for row in rows[:names]):
+            return names
+    return next((n for n, row in enumerate(rows) if len(row) == width or "word" not in row), len(rows))
 
 
 def _note_marks(seen, cells, line):
     """Notes evidence for or against a decimal comma: the first cell of each kind with its line."""
     for cell in cells:
-        if cell_number(cell, ",") is not None and ("," in cell or "." in cell):
+        if ("," in cell or "." in cell) and cell_number(cell, ",") is not None:
             kind = "point" if "." in cell else "either" if THOUSANDS["."].fullmatch(cell) else "comma"
             seen.setdefault(kind, (cell, line))
-
-
-def _check_marks(seen, table, problems):
-    table.decimal_clear = "either" not in seen or "comma" in seen
-    if "either" in seen and "point" in seen:
-        (cell, line), (point, point_line) = seen["either"], seen["point"]
-        problems.add(f"{table.file}:{line}", "numbers must have one decimal mark and no separators of thousands, got "
-                     f"{quoted(cell)} beside {quoted(point)} in line {point_line}: write the table with points only")
-
-
-def _in_brackets(word):
-    return len(word) >= 2 and word[0] in "[(" and word[-1] in "])"
 
 
 def _names_of(headings, comment, format_, width):
@@ -140,9 +113,9 @@ def _names_of(headings, comment, format_, width):
     if not headings:
         return comment if len(comment) == width else format_
     names = headings[-1]
-    if len(headings) > 1 and all(_in_brackets(word) or word in UNITS for word in names):
-        units = ["" if (unit := word[1:-1] if _in_brackets(word) else word) in ("-", "1") else unit for word in names] + [""]
-        names = [name + (f" [{unit}]" if unit else "") for name, unit in zip(headings[-2], units)]
+    units = [re.sub(r"^[\[(](.*)[\])]$", r"\1", word) for word in names]
+    if len(headings) > 1 and all(unit != word or word in UNITS for unit, word in zip(units, names)):
+        names = [name + ("" if unit in ("", "-", "1") else f" [{unit}]") for name, unit in zip(headings[-2], units + [""])]
     return names
 
 
@@ -150,44 +123,44 @@ def parse_text(table, lines, form, problems):
     form = form or guess_form(lines)
     table.begin("text", lines, form)
     above = _lines_above(lines, form.separator)
-    seen, mark = {}, "." if form.decimal == "," else ","
-    headings, comment, format_, trailing = [], [], [], False
+    headings, comment, format_, trailing, marks = [], [], [], False, {}
     for number, line in enumerate(lines, 1):
         words = line.strip(" \t\r")
-        if not words or problems.full:
+        if not words or problems.full or (words[0] == "#" and table.columns):
             continue
         if words[0] == "#":
             words = words[1:].strip(" \t\r")
-            if not table.columns and words.startswith("format "):  # of Yade
-                names = words[7:].strip().split("_")
-                format_ = names[:-1] if names[-1] == "attrs" else names
-            elif not table.columns:
+            if words.startswith("format "):  # of Yade
+                format_ = words[7:].strip().removesuffix("_attrs").split("_")
+            else:
                 comment = cut(words, form.separator if form.separator in words else " ")
             continue
         cells = cut(line, form.separator)
-        is_row = bool(table.columns)
-        has_numbers = is_row or _numbers_in(cells, form.decimal) > 0
-        if len(cells) > 1 and not cells[-1] and (_numbers_in(cells, form.decimal) > 0):  # a separator at the end of the line
-            trailing = trailing or not is_row
+        has_numbers = (not table.columns or not cells[-1]) and _numbers_in(cells, form.decimal) > 0
+        if len(cells) > 1 and not cells[-1] and has_numbers:  # a separator at the end of the line
+            trailing = trailing or not table.columns
             cells = cells[:-1] if trailing else cells
-        if not is_row and (above > 0 or not has_numbers):
+        if not table.columns and (above > 0 or not has_numbers):
             headings.append(cells)
             above -= 1
             continue
-        if not is_row:
+        if not table.columns:
             if len(cells) > MAX_COLUMNS:
                 problems.add(f"{table.file}:{number}", f"must have at most {MAX_COLUMNS} columns, got {len(cells)}")
             table.name_columns(_names_of(headings, comment, format_, len(cells)), len(cells))
         if form.decimal == ",":
-            _note_marks(seen, cells, number)
-        if mark in line and (wrong := next(filter(THOUSANDS[form.decimal].fullmatch, cells), "")):
+            _note_marks(marks, cells, number)
+        if wrong := next(filter(THOUSANDS[form.decimal].fullmatch, cells), ""):
             problems.add(f"{table.file}:{number}", f"numbers must have no separators of thousands, got {quoted(wrong)} where the decimal is "
                          f'"{form.decimal}": write the table without them')
         elif len(cells) == len(table.columns):
             table.add_row(cells, number)
         else:
             problems.add(f"{table.file}:{number}", f"must have {len(table.columns)} columns as the first row, got {len(cells)}")
-    if form.decimal == ",":
-        _check_marks(seen, table, problems)
+    table.decimal_clear = "either" not in marks or "comma" in marks
+    if "either" in marks and "point" in marks:
+        (cell, line), (point, point_line) = marks["either"], marks["point"]
+        problems.add(f"{table.file}:{line}", "numbers must have one decimal mark and no separators of thousands, got "
+                     f"{quoted(cell)} beside {quoted(point)} in line {point_line}: write the table with points only")
     if table.rows == 0 and not problems.count:
         problems.add(table.file, "must have at least one row with a number in it, got none")
