@@ -145,9 +145,9 @@ class MappedTable:
     def number(self, key):
         return to_number(self.word(key, "0")) or 0.0
 
-    def length_factor(self):
+    def length_factor(self, otherwise="m"):
         """Length of the table's unit in metres."""
-        unit = self.word("length_unit", "m")
+        unit = self.word("length_unit", otherwise)
         return self.number("voxel_size") if unit == VOXEL else LENGTHS[unit]
 
     def force_factor(self):
