@@ -90,7 +90,7 @@ TEST_F(CliTest, ARunThatExceedsTheDeviceIsRefusedBeforeItStarts) {
          "packing.diameter_min=1.9e-4", "--set", "packing.diameter_mean=2e-4", "--set",
          "packing.diameter_sd=1e-5", "--set", "packing.diameter_max=2.1e-4"},
         {"--set", "plate.speed=1e-12"},
-        {"--set", "plate.start=50"}};
+        {"--set", "plate.start=4", "--set", "packing.diameter_min=1e-3"}};
     const char* reasons[] = {"memory", "steps", "numerics.precision must be double"};
     for (std::size_t i = 0; i < too_much.size(); ++i) {
         std::vector<std::string> validate{"validate", "small.toml"};

@@ -70,7 +70,7 @@ def is_not_submitted_twice(place):
     said = finish(run_words(place, "jobs", ["--no-wait"]))
     number = re.search(r"job (\d+):", said)[1]
     said = finish(run_words(place, "jobs"))
-    assert f"job {number} of this work is still there" in said, said
+    assert f"job {number} of this work is still pending or running" in said, said
     place.expect_like_alone("jobs")
 
 
