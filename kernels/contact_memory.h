@@ -9,43 +9,41 @@ typedef struct {
     lanes3 rolling; /* elongation of the rolling spring, from this grain's side [rad] */
 } Memory;
 
-/* The rows of a work-item's grains. */
+/* The rows of a work-item's grains: `load_row`, `store_row` and their vector forms access row `kind`. */
 INLINE global real* memory_of(Grain at, global real* restrict memory) {
     return memory + (size_t)(at.first / LANES) * (LANES * SLOTS) * at.replica->memory_rows;
 }
 
-INLINE lanes memory_row(global const real* kept, int kind, int v) {
+INLINE lanes load_row(global const real* kept, int kind, int v) {
     return load_slot(kept, kind * SLOTS * LANES, v);
 }
-INLINE void set_memory_row(lanes value, global real* kept, int kind, int v) {
+INLINE void store_row(lanes value, global real* kept, int kind, int v) {
     store_slot(value, kept, kind * SLOTS * LANES, v);
 }
 
-INLINE lanes3 memory_rows_of_vector(global const real* kept, int kind, int v) {
-    return (lanes3){memory_row(kept, kind, v), memory_row(kept, kind + 1, v), memory_row(kept, kind + 2, v)};
+INLINE lanes3 load_vector_rows(global const real* kept, int kind, int v) {
+    return (lanes3){load_row(kept, kind, v), load_row(kept, kind + 1, v), load_row(kept, kind + 2, v)};
 }
-INLINE void set_memory_rows_of_vector(lanes3 value, global real* kept, int kind, int v) {
-    set_memory_row(value.x, kept, kind, v);
-    set_memory_row(value.y, kept, kind + 1, v);
-    set_memory_row(value.z, kept, kind + 2, v);
+INLINE void store_vector_rows(lanes3 value, global real* kept, int kind, int v) {
+    store_row(value.x, kept, kind, v);
+    store_row(value.y, kept, kind + 1, v);
+    store_row(value.z, kept, kind + 2, v);
 }
 
 INLINE Memory recall(global const Replica* restrict replica, const int effects, global const real* kept,
                      int v) {
     Memory memory = {ZERO3, R(0), R(0), ZERO3};
-    if (replica->mindlin) memory.spring = memory_rows_of_vector(kept, 0, v);
-    if (effects & EFFECT_PLASTICITY) memory.deepest = memory_row(kept, replica->deepest_row, v);
-    if (effects & EFFECT_VISCOELASTICITY) memory.relaxed = memory_row(kept, replica->relaxed_row, v);
-    if (effects & EFFECT_ROLLING_RESISTANCE)
-        memory.rolling = memory_rows_of_vector(kept, replica->rolling_row, v);
+    if (replica->mindlin) memory.spring = load_vector_rows(kept, 0, v);
+    if (effects & EFFECT_PLASTICITY) memory.deepest = load_row(kept, replica->deepest_row, v);
+    if (effects & EFFECT_VISCOELASTICITY) memory.relaxed = load_row(kept, replica->relaxed_row, v);
+    if (effects & EFFECT_ROLLING_RESISTANCE) memory.rolling = load_vector_rows(kept, replica->rolling_row, v);
     return memory;
 }
 
 INLINE void remember(global const Replica* restrict replica, const int effects, Memory memory,
                      global real* kept, int v) {
-    if (replica->mindlin) set_memory_rows_of_vector(memory.spring, kept, 0, v);
-    if (effects & EFFECT_PLASTICITY) set_memory_row(memory.deepest, kept, replica->deepest_row, v);
-    if (effects & EFFECT_VISCOELASTICITY) set_memory_row(memory.relaxed, kept, replica->relaxed_row, v);
-    if (effects & EFFECT_ROLLING_RESISTANCE)
-        set_memory_rows_of_vector(memory.rolling, kept, replica->rolling_row, v);
+    if (replica->mindlin) store_vector_rows(memory.spring, kept, 0, v);
+    if (effects & EFFECT_PLASTICITY) store_row(memory.deepest, kept, replica->deepest_row, v);
+    if (effects & EFFECT_VISCOELASTICITY) store_row(memory.relaxed, kept, replica->relaxed_row, v);
+    if (effects & EFFECT_ROLLING_RESISTANCE) store_vector_rows(memory.rolling, kept, replica->rolling_row, v);
 }

@@ -73,9 +73,7 @@ INLINE ContactSums measure_contacts(Grain at, Batch batch, MeasuredRows rows, EX
         const Contacts c = contact_forces(at, replica->effects, neighbour, b, R(0), &memory);
         add_contact_sums(at, neighbour, b, c, &sums);
         if (replica->finite_contacts) tabulate(c, neighbour.normal, v, table);
-        store_slot(c.force.x, rows.force, 0, v);
-        store_slot(c.force.y, rows.force, LANES * SLOTS, v);
-        store_slot(c.force.z, rows.force, 2 * LANES * SLOTS, v);
+        store_vector_rows(c.force, rows.force, 0, v);
         store_slot(c.overlap, rows.overlap, at.row, v);
         store_slot(c.arm, rows.arm, at.row, v);
     }

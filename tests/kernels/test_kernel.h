@@ -20,6 +20,25 @@ inline cl::Program with_kernel(const std::string& text, const KernelBuild& kerne
     return program;
 }
 
+/// Runs a kernel with the arguments replica, `in` and its result, which has `out` numbers.
+inline std::vector<float> mapped(const cl::Program& program, const char* name, int work_items,
+                                 std::size_t groups, const mcdem::f32::Replica& replica,
+                                 const std::vector<float>& in, std::size_t out) {
+    struct Replicas;
+    struct In;
+    struct Out;
+    mcdem::Field<Replicas> of(device(), 1, sizeof replica);
+    mcdem::Field<In> from(device(), in.size(), sizeof(float));
+    mcdem::Field<Out> to(device(), out, sizeof(float));
+    of.write(&replica);
+    from.write(in.data());
+    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<In>, mcdem::Field<Out>>(
+        device(), program, name, work_items)(groups, of, from, to);
+    std::vector<float> found(out);
+    to.read(found.data());
+    return found;
+}
+
 /// Applies the OpenCL code `body` to rows of numbers, one work-item per row: it reads `in`, writes `out`,
 /// and can use `replica`. `in` has a multiple of `read` numbers; the result has `written` numbers per row.
 inline std::vector<float> mapped_rows(const std::string& body, const mcdem::f32::Replica& replica,
@@ -31,20 +50,8 @@ inline std::vector<float> mapped_rows(const std::string& body, const mcdem::f32:
                     "global real* out = all_out + get_global_id(0) * {};\n{}\n}}",
                     read, written, body),
         build(Precision::single_precision));
-    struct Replicas;
-    struct In;
-    struct Out;
     const std::size_t rows = in.size() / static_cast<std::size_t>(read);
-    mcdem::Field<Replicas> of(device(), 1, sizeof replica);
-    mcdem::Field<In> from(device(), in.size(), sizeof(float));
-    mcdem::Field<Out> to(device(), rows * static_cast<std::size_t>(written), sizeof(float));
-    of.write(&replica);
-    from.write(in.data());
-    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<In>, mcdem::Field<Out>>(device(), program, "map_rows",
-                                                                               1)(rows, of, from, to);
-    std::vector<float> found(rows * static_cast<std::size_t>(written));
-    to.read(found.data());
-    return found;
+    return mapped(program, "map_rows", 1, rows, replica, in, rows * static_cast<std::size_t>(written));
 }
 
 /// Applies the OpenCL code `body` as a step does, one work-group per block of grains: it has the `table` and
@@ -65,21 +72,10 @@ inline std::vector<float> mapped_slots(const std::string& body, const mcdem::f32
         "const Block block = {{0, (int)get_group_id(0) * BLOCK}};\n"
         "const int first = FIRST_GRAIN(block);\n{}\n}}",
         read, written, body);
-    struct Replicas;
-    struct In;
-    struct Out;
     const std::size_t slots = in.size() / static_cast<std::size_t>(read);
-    mcdem::Field<Replicas> of(device(), 1, sizeof replica);
-    mcdem::Field<In> from(device(), in.size(), sizeof(float));
-    mcdem::Field<Out> to(device(), slots * static_cast<std::size_t>(written), sizeof(float));
-    of.write(&replica);
-    from.write(in.data());
-    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<In>, mcdem::Field<Out>>(
-        device(), with_kernel(text, kernels), "map_slots", kernels.work_items())(
-        slots / static_cast<std::size_t>(kernels.slots * kernels.block()), of, from, to);
-    std::vector<float> found(slots * static_cast<std::size_t>(written));
-    to.read(found.data());
-    return found;
+    return mapped(with_kernel(text, kernels), "map_slots", kernels.work_items(),
+                  slots / static_cast<std::size_t>(kernels.slots * kernels.block()), replica, in,
+                  slots * static_cast<std::size_t>(written));
 }
 
 }  // namespace reference

@@ -26,8 +26,7 @@ using Numbers = std::vector<std::size_t>;
 
 const char* const all_devices = "all";
 const char* const group = "Many devices and nodes";
-constexpr int max_tries =
-    3;  ///< passes in which no part is finished, for example because processes are killed
+constexpr int max_tries = 3;       ///< passes in which no part is finished
 constexpr int all_is_merged = -1;  ///< instead of an exit code: everything is merged and must be reported
 
 std::string choice_of(const std::string& device) { return device == all_devices ? "" : device; }

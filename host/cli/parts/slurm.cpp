@@ -27,8 +27,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto look = std::chrono::milliseconds(200);  ///< interval between checks of the folder
 constexpr auto ask = std::chrono::seconds(5);          ///< interval between queries of Slurm
-constexpr int max_queries = 4;                         ///< of a query that must be answered
-constexpr auto pause = std::chrono::seconds(2);        ///< between these
+constexpr int max_queries = 4;                         ///< of squeue before it counts as not answering
+constexpr auto pause = std::chrono::seconds(2);        ///< between these queries
 constexpr auto settle = std::chrono::seconds(10);      ///< time until files of a finished job become visible
 
 /// Maximum size of an array: Slurm's default of MaxArraySize.
@@ -76,7 +76,7 @@ std::optional<std::string> queued(const SlurmJob& job) {
 }
 
 /// The same; waits for an answer. Without one, the same parts could be submitted twice.
-std::string surely_queued(const SlurmJob& job) {
+std::string queued_for_certain(const SlurmJob& job) {
     for (int tries = 0; tries < max_queries; ++tries) {
         if (tries > 0) std::this_thread::sleep_for(pause);
         if (const auto number = queued(job)) return *number;
@@ -135,7 +135,7 @@ std::string submit(const SlurmJob& job, const std::vector<std::size_t>& all_part
         all_parts.begin() + static_cast<std::ptrdiff_t>(std::min(max_tasks, all_parts.size())));
     const fs::path script = job.folder / "job.sh";
     expect_replaceable(script, FileKind::job_script);
-    if (const auto there = fs::exists(script) ? surely_queued(job) : ""; !there.empty()) {
+    if (const auto there = fs::exists(script) ? queued_for_certain(job) : ""; !there.empty()) {
         spdlog::info("job {} of this work is still pending or running", there);
         return there;
     }

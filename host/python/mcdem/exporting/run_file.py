@@ -4,7 +4,7 @@ import re
 import h5py
 import numpy as np
 
-MOST_OF_LABEL = 80  # characters in the name of a file
+MAX_LABEL_LENGTH = 80  # characters in the name of a file
 PHASES = ("load", "unload")
 PLATE = 5  # number of the wall
 PERIODIC = {"box": (), "cylinder": (), "periodic": (1, 0), "cell": (2, 1, 0)}  # axes; a cell may be tilted, so z is first
@@ -38,7 +38,7 @@ class Replica:
     @property
     def file_name(self):
         """The number and the label, in characters that are safe in all file systems and shells: replica_00003_mc_dem_friction=0.03_2."""
-        words = re.sub(r"[^0-9A-Za-z.=+-]+", "_", self.label).lstrip("_")[:MOST_OF_LABEL].rstrip("_.")
+        words = re.sub(r"[^0-9A-Za-z.=+-]+", "_", self.label).lstrip("_")[:MAX_LABEL_LENGTH].rstrip("_.")
         return self.name + ("_" + words if words else "")
 
     def scans(self):

@@ -132,10 +132,10 @@ def guess_grain_lengths(table, known):
 def _end_that_moves(ends, diameter):
     """The end that moves towards the other one between the highest and the lowest frame; it is the one with the plate."""
     heights = ends[:, 1] - ends[:, 0]
-    shrink = np.ptp(heights)
-    if not shrink > 0.1 * diameter:  # smaller changes may be noise
+    compression = np.ptp(heights)
+    if not compression > 0.1 * diameter:  # smaller changes may be noise
         return "none"
-    at_low = (ends[np.argmin(heights), 0] - ends[np.argmax(heights), 0]) / shrink
+    at_low = (ends[np.argmin(heights), 0] - ends[np.argmax(heights), 0]) / compression
     return "lower" if at_low > 0.8 else "upper" if at_low < 0.2 else "both"
 
 
