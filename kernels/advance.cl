@@ -81,7 +81,7 @@ INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const sl
                               EXCHANGE ContactTable* table) {
     global const Replica* restrict replica = at.replica;
     global real* kept = memory_of(at, batch.memory);
-    GrainSums sums = {ZERO3, ZERO3, R(0)};
+    GrainSums sums = {ZERO3, ZERO3, R(0), {R(0), R(0), R(0)}};
     /* Two loops: a CPU computes several slots of the second one at the same time, as long as its reorder
        buffer holds more than one. */
     Neighbours neighbours[SLOTS_HERE];
@@ -97,6 +97,7 @@ INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const sl
         const Contacts c = contact_forces(at, effects, neighbour, b, replica->time_step, &memory);
         remember(replica, effects, memory, kept, v);
         add_contacts(c, neighbour.normal, &sums.force, &sums.torque);
+        add_power(at, neighbour, partner[v], c, &sums.power);
         if (effects & EFFECT_ROLLING_RESISTANCE) sums.torque = add3(sums.torque, c.couple);
         /* The negated comparison is also true for NaN. */
         const mask too_deep =
@@ -144,6 +145,29 @@ INLINE void keep_state(Grain at, slots grain, Batch batch, Written to) {
         store_slot(load_slot(batch.displacement, at.row, v), to.displacement, at.row, v);
 }
 
+/* Adds the work of a step to that of the interval. Work by walls and damping is integrated by the trapezoidal
+   rule: half of the first step is added here, the other half by `measure` at the end. Friction gives the work
+   of a step (friction.h); drag acts on the mean velocities of the step, as the change of the kinetic energy
+   requires. */
+INLINE void add_work(Grain at, Moving after, Power power, bool first, global real4* works, slots place) {
+    global const Replica* restrict replica = at.replica;
+    const lanes mass = sphere_mass(at, at.now.radius),
+                inertia = R(0.4) * mass * at.now.radius * at.now.radius;
+    const lanes3 velocity = scale3(R(0.5), add3(at.now.velocity, after.velocity));
+    const lanes3 spin = scale3(R(0.5), add3(at.now.spin, after.spin));
+    const lanes dragged = replica->drag * mass * dot3(at.now.velocity, velocity) +
+                          replica->spin_drag * inertia * dot3(at.now.spin, spin);
+    if (replica->container == CONTAINER_CELL) power.driven -= mass * dot3(velocity, flow_of_motion(at));
+    const real dt = replica->time_step, part = first ? R(0.5) * dt : dt;
+    lanes4 work = {R(0), R(0), R(0), R(0)};
+    if (!first) work = gather4(works, place);
+    work.x += part * power.driven;
+    work.y += part * power.damped;
+    work.z += dt * power.rubbed;
+    work.w += dt * dragged;
+    scatter4(work, works, place);
+}
+
 /* Integrates and stores the new state. Stops the replica after this step if a grain has a status bit or has
    moved farther than `max_move` since the neighbour list was built. */
 INLINE void finish_step(Grain at, slots grain, GrainSums total, int step, Written to) {
@@ -154,6 +178,7 @@ INLINE void finish_step(Grain at, slots grain, GrainSums total, int step, Writte
     store_motion(after, to.motion, grain);
     const lanes4 rotation = gather4(tracks + 1, place);
     scatter4(rotated(rotation, scale3(at.replica->time_step, after.spin)), tracks + 1, place);
+    add_work(at, after, total.power, step == 0, tracks + 2, place);
     const lanes3 moved = way_since_listed(at, to.track, grain, after.position);
     const real limit = at.replica->max_move;
     const mask far = AS_MASK(dot3(moved, moved) > limit * limit) & is_grain;

@@ -6,16 +6,18 @@
 
 typedef struct {
     mask touching;
-    lanes approach;     /* delta, corrected by both displacements; negative for a gap [m] */
-    lanes overlap;      /* delta if touching, else zero [m] */
-    lanes radius;       /* contact radius a = sqrt(R* delta) [m] */
-    lanes elastic;      /* Hertz force including stiffening; it displaces surfaces [N] */
-    lanes displacement; /* b of this grain's surface, by all its contacts [m] */
-    lanes arm;          /* from the centre to the contact point, or to the probed surface point [m] */
-    lanes3 force;       /* on this grain [N] */
-    lanes3 tangential;  /* friction part of the force [N] */
-    lanes3 couple;      /* rolling resistance on this grain; set only with that effect [N m] */
-    lanes energy;       /* stored by effects, in excess of 2/5 F delta; set only with effects [J] */
+    lanes approach;       /* delta, corrected by both displacements; negative for a gap [m] */
+    lanes overlap;        /* delta if touching, else zero [m] */
+    lanes radius;         /* contact radius a = sqrt(R* delta) [m] */
+    lanes elastic;        /* Hertz force including stiffening; it displaces surfaces [N] */
+    lanes displacement;   /* b of this grain's surface, by all its contacts [m] */
+    lanes arm;            /* from the centre to the contact point, or to the probed surface point [m] */
+    lanes3 force;         /* on this grain [N] */
+    lanes3 tangential;    /* friction part of the force [N] */
+    lanes3 couple;        /* rolling resistance on this grain; set only with that effect [N m] */
+    lanes energy;         /* stored by effects, in excess of 2/5 F delta; set only with effects [J] */
+    lanes spring_energy;  /* of the springs of friction and rolling resistance [J] */
+    lanes damped, rubbed; /* power of normal damping, and of tangential forces and couples [W] */
 } Contacts;
 
 /* Results of the elastic part that damping, friction and effects need. */
@@ -112,8 +114,9 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours neighbour
     const Reduced pair = pressed.pair;
     const lanes damping = OF_PAIRS(at, damping, neighbour);
     const lanes separating = dot3(neighbour.velocity, neighbour.normal);
-    const lanes normal_force =
-        pressed.relaxed_force - damping * sqrt(pressed.stiffness * pair.mass) * separating;
+    const lanes damping_force = damping * sqrt(pressed.stiffness * pair.mass) * separating;
+    const lanes normal_force = pressed.relaxed_force - damping_force;
+    c.damped = damping_force * separating;
 
     /* The contact point is midway between the two displaced surfaces (Brodu et al. 2015). */
     const lanes midway = R(0.5) * (neighbour.distance + (radius + c.displacement) -
@@ -132,8 +135,11 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours neighbour
     SpringTerms terms = {OF_PAIRS(at, friction, neighbour) * limiting, R(0), damping, pair.mass, c.touching};
     if (replica->mindlin || effects & EFFECT_ROLLING_RESISTANCE)
         terms.stiffness = shear_stiffness(at, effects, neighbour, c.radius);
-    c.tangential = friction(replica, effects, terms, sliding_velocity(at, neighbour, c.arm, separating),
-                            neighbour.normal, elapsed, &memory->spring);
+    const lanes3 sliding = sliding_velocity(at, neighbour, c.arm, separating);
+    c.tangential = friction(replica, effects, terms, sliding, neighbour.normal, elapsed, &memory->spring);
+    c.rubbed = dot3(c.tangential, sliding);
+    c.spring_energy =
+        R(0.5) * replica->mindlin_share * terms.stiffness * dot3(memory->spring, memory->spring);
     if (effects & EFFECT_ROLLING_RESISTANCE) {
         terms.limit = fmax(normal_force, (lanes)(R(0)));
         c.couple = rolling_couple(at, neighbour, pair.radius, terms, elapsed, &memory->rolling);

@@ -75,3 +75,10 @@ INLINE Neighbours gather_neighbours(Grain at, const int effects, global const Mo
     neighbour.normal = scale3(inverse_root(squared), apart);
     return neighbour;
 }
+
+/* Velocity of a neighbour relative to this grain by the motion of a cell [m/s]. */
+INLINE lanes3 cell_velocity(Grain at, Neighbours neighbour) {
+    const lanes3 apart = scale3(neighbour.distance, neighbour.normal);
+    return deformed_lanes(deformation_rate(at.replica),
+                          undeformed(deformation(at.replica, at.elapsed), apart));
+}

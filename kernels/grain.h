@@ -1,7 +1,7 @@
 /* Assignment of grains to work-items, and sums over the slots of a grain, for the CPU and the GPU layout.
    Kernels that process contacts begin with MEMORY_OF_WORK_ITEM, which declares `table` (the contact table of
    its grains) and `scratch` (for sums over slots). FIRST_GRAIN(block) is the first grain of the work-item. */
-#define SLOT_SUMS 7            /* sums per step: force, torque, slots with a status */
+#define SLOT_SUMS 10           /* sums per step: force, torque, slots with a status, work */
 #define SHARED_ROW (SLOTS + 1) /* odd, so that rows start in different banks of local memory */
 #if LANES == 16
 #define IS_LEADER true
@@ -46,10 +46,27 @@ OVER_SLOTS(sum_slots, PLUS)
 OVER_SLOTS(max_slots, fmax)
 #endif
 
+/* Power of contacts, as in Report [W]. */
+typedef struct {
+    lanes driven, damped, rubbed;
+} Power;
+
+/* Adds the power of a contact; a grain has half of that of a contact with another one. */
+INLINE void add_power(Grain at, Neighbours neighbour, slots partner, Contacts c, Power* restrict sums) {
+    const lanes part = WHERE(neighbour.wall, R(1), R(0.5));
+    sums->damped += part * c.damped;
+    sums->rubbed += part * c.rubbed;
+    const mask plate = AS_MASK(partner == WALL_PARTNER(5));
+    if (ANY(plate)) sums->driven += WHERE(plate, c.force.z * at.replica->plate_velocity, R(0));
+    if (at.replica->container == CONTAINER_CELL)
+        sums->driven += WHERE(neighbour.occupied, R(0.5) * dot3(c.force, cell_velocity(at, neighbour)), R(0));
+}
+
 /* Sums over the slots of a grain in a step. */
 typedef struct {
     lanes3 force, torque;
     lanes trouble; /* counts for trouble_status() in advance.cl */
+    Power power;
 } GrainSums;
 
 INLINE void share_sums(GrainSums slot, EXCHANGE real* scratch) {
@@ -60,6 +77,9 @@ INLINE void share_sums(GrainSums slot, EXCHANGE real* scratch) {
     share(slot.torque.y, 4, scratch);
     share(slot.torque.z, 5, scratch);
     share(slot.trouble, 6, scratch);
+    share(slot.power.driven, 7, scratch);
+    share(slot.power.damped, 8, scratch);
+    share(slot.power.rubbed, 9, scratch);
 }
 
 /* The result is valid only in the grain's leader. */
@@ -75,7 +95,8 @@ INLINE GrainSums add_up(GrainSums slot, EXCHANGE real* scratch) {
     EXCHANGE const real* s = scratch;
     return (GrainSums){{s[0], s[SHARED_ROW], s[2 * SHARED_ROW]},
                        {s[3 * SHARED_ROW], s[4 * SHARED_ROW], s[5 * SHARED_ROW]},
-                       s[6 * SHARED_ROW]};
+                       s[6 * SHARED_ROW],
+                       {s[7 * SHARED_ROW], s[8 * SHARED_ROW], s[9 * SHARED_ROW]}};
 #endif
 }
 

@@ -2,6 +2,12 @@
    Forces are the contact forces, weight minus buoyancy, and drag; grains have the moment of inertia of a
    homogeneous sphere. In a deformed cell the equations of motion are SLLOD (Evans & Morriss 1984),
    X' = F^-1 v, m v' = force - m F' F^-1 v. */
+/* F' F^-1 v of a grain in a cell [m/s2]. */
+INLINE lanes3 flow_of_motion(Grain at) {
+    const Deformation f = deformation(at.replica, at.elapsed);
+    return deformed_lanes(deformation_rate(at.replica), undeformed(f, at.now.velocity));
+}
+
 INLINE Moving integrate(Grain at, lanes3 force, lanes3 torque) {
     global const Replica* restrict replica = at.replica;
     const Moving now = at.now;
@@ -15,8 +21,7 @@ INLINE Moving integrate(Grain at, lanes3 force, lanes3 torque) {
     after.spin = add_scaled3(now.spin, dt, turning);
     if (replica->container == CONTAINER_CELL) {
         const Deformation f = deformation(replica, at.elapsed);
-        const lanes3 own = deformed_lanes(deformation_rate(replica), undeformed(f, now.velocity));
-        after.velocity = add_scaled3(now.velocity, dt, subtract3(acceleration, own));
+        after.velocity = add_scaled3(now.velocity, dt, subtract3(acceleration, flow_of_motion(at)));
         after.position = add_scaled3(now.position, dt, undeformed(f, after.velocity));
         return after;
     }

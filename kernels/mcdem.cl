@@ -21,6 +21,7 @@
 #include "surface_displacement.h"
 #include "confinement.h"
 #include "integrate.h"
+#include "stable_step.h"
 #include "grain.h"
 #include "cell_list.cl"
 #include "neighbour_list.cl"

@@ -13,8 +13,9 @@ typedef struct {
 typedef struct {
     real4 listed_position; /* position when the neighbour list was built [m] */
     real4 rotation;        /* since the start; quaternion with real part w */
+    real4 work;            /* in this interval, as in Report: work, damped, rubbed, dragged [J] */
 } Track;
-#define TRACK_VECTORS 2
+#define TRACK_VECTORS 3
 
 /* The Motion of each lane's grain. */
 typedef struct {

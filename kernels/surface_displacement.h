@@ -99,7 +99,7 @@ INLINE void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* ta
 #else
 #define EACH_OTHER(other, slot, table)          \
     for (int other = 0; other < SLOTS; ++other) \
-        if (other != (slot) && (table)->elastic[other] > R(0))
+        if (other != (slot) && (table)->elastic[other] != R(0))
 #endif
 
 INLINE lanes cosine_between(EXCHANGE const ContactTable* table, int k, int c) {

@@ -34,7 +34,8 @@ inline std::array<Vec3, wall_count> no_wall_forces() {
     return forces;
 }
 
-inline Mat3 unknown_tensor() { return Mat3::Constant(std::numeric_limits<double>::quiet_NaN()); }
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+inline Mat3 unknown_tensor() { return Mat3::Constant(unknown); }
 
 /// The packing at one plate position. Averages that were not measured are NaN. Vectors are empty if positions
 /// or contacts were not recorded.
@@ -48,17 +49,24 @@ struct Scan {
     std::array<Vec3, wall_count> wall_force =
         no_wall_forces();       ///< on each wall by the grains, or through each face of a cell [N]
     double kinetic_energy = 0;  ///< [J]
-    double elastic_energy = 0;  ///< [J]
-    bool settled = false;       ///< the settling criterion was met
-    double rate_error = std::numeric_limits<double>::quiet_NaN();  ///< estimated relative error of forces
-                                                                   ///< caused by the plate's speed
+    double elastic_energy = 0;  ///< of contacts, surfaces and springs [J]
+    /// Energy budget since the first steps [J]; NaN in measured data. Work done on the grains and losses are
+    /// positive.
+    double wall_work = unknown;      ///< by the plate, or by the motion of a cell
+    double weight_work = unknown;    ///< by the weight
+    double damping_loss = unknown;   ///< by normal damping of contacts
+    double friction_loss = unknown;  ///< by friction and rolling resistance, with their damping
+    double drag_loss = unknown;      ///< by drag of the fluid, and of stops for scans
+    double energy_error = unknown;  ///< change of stored energy, plus losses, minus work: created by the time
+                                    ///< step if positive; lost by viscoelasticity or plasticity if negative
+    bool settled = false;           ///< the settling criterion was met
+    double rate_error = unknown;    ///< estimated relative error of forces caused by the plate's speed
     double coordination_number = 0;  ///< Z: contacts per grain, including walls, above the scene's threshold
     double mean_force = 0;           ///< <f>: mean |force| of those contacts [N]
     double packing_fraction = 0;     ///< phi, in the space more than a mean diameter from every wall
     double branch_length = 0;        ///< <b>: mean distance between centres of touching grains [m]
-    double max_overlap =
-        std::numeric_limits<double>::quiet_NaN();  ///< largest geometric overlap of two grains over the sum
-                                                   ///< of their radii; 0: no contact
+    double max_overlap = unknown;    ///< largest geometric overlap of two grains over the sum of their radii;
+                                     ///< 0: no contact
     Mat3 stress = unknown_tensor();  ///< of the packing, compression positive (core/stress.h) [Pa]
     Mat3 fabric = unknown_tensor();  ///< mean of n n over contacts between grains
     std::vector<Vec3> position;      ///< by grain [m]

@@ -23,7 +23,8 @@ constexpr const char* header =
     "x_min_force_N,x_max_force_N,y_min_force_N,y_max_force_N,coordination_number,mean_force_N,"
     "packing_fraction,branch_length_m,max_overlap,stress_xx_Pa,stress_yy_Pa,stress_zz_Pa,stress_yz_Pa,stress_"
     "xz_Pa,"
-    "stress_xy_Pa,kinetic_energy_J,elastic_energy_J,settled,rate_error";
+    "stress_xy_Pa,kinetic_energy_J,elastic_energy_J,settled,rate_error,wall_work_J,weight_work_J,damping_loss_J,"
+    "friction_loss_J,drag_loss_J,energy_error_J";
 
 constexpr std::pair<int, int> voigt[] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 
@@ -85,8 +86,10 @@ std::string csv_text(const Run& run, const StopWanted& stop_wanted) {
                            scan.packing_fraction, scan.branch_length, scan.max_overlap);
             for (const auto& [row, column] : voigt)
                 fmt::format_to(out, "{},", 0.5 * (scan.stress(row, column) + scan.stress(column, row)));
-            fmt::format_to(out, "{},{},{:d},{}", scan.kinetic_energy, scan.elastic_energy, scan.settled,
+            fmt::format_to(out, "{},{},{:d},{},", scan.kinetic_energy, scan.elastic_energy, scan.settled,
                            scan.rate_error);
+            fmt::format_to(out, "{},{},{},{},{},{}", scan.wall_work, scan.weight_work, scan.damping_loss,
+                           scan.friction_loss, scan.drag_loss, scan.energy_error);
             if (any_side) fmt::format_to(out, ",{}", along_side(recording.box, scan));
             if (any_cell) fmt::format_to(out, ",{}", fmt::join(scan.strain, ","));
             fmt::format_to(out, "{}\n", parameters);

@@ -100,9 +100,10 @@ std::vector<Scan> ResultFile::scans(const Recording& recording, std::size_t repl
     const h5::Dataset table = file_.dataset(observables_path(replica));
     const h5::Handle type = scan_row_type();
     table.expect_row({});
-    expect_fields(
-        table, type,
-        {"rate_error", "max_overlap", "stress", "fabric", "strain"});  // files of earlier versions have none
+    expect_fields(table, type,
+                  {"rate_error", "max_overlap", "stress", "fabric", "strain", "wall_work", "weight_work",
+                   "damping_loss", "friction_loss", "drag_loss",
+                   "energy_error"});  // files of earlier versions have none
     std::vector<ScanRow> rows(table.rows(), scan_row(Scan{}));
     table.read(type, rows.data(), 0, rows.size());
     std::vector<Scan> scans;

@@ -40,6 +40,12 @@ void for_each_field(auto visit) {
     visit("wall_force", "N", &Scan::wall_force, &ScanRow::wall_force);
     visit("kinetic_energy", "J", &Scan::kinetic_energy, &ScanRow::kinetic_energy);
     visit("elastic_energy", "J", &Scan::elastic_energy, &ScanRow::elastic_energy);
+    visit("wall_work", "J", &Scan::wall_work, &ScanRow::wall_work);
+    visit("weight_work", "J", &Scan::weight_work, &ScanRow::weight_work);
+    visit("damping_loss", "J", &Scan::damping_loss, &ScanRow::damping_loss);
+    visit("friction_loss", "J", &Scan::friction_loss, &ScanRow::friction_loss);
+    visit("drag_loss", "J", &Scan::drag_loss, &ScanRow::drag_loss);
+    visit("energy_error", "J", &Scan::energy_error, &ScanRow::energy_error);
     visit("rate_error", "1", &Scan::rate_error, &ScanRow::rate_error);
     visit("coordination_number", "1", &Scan::coordination_number, &ScanRow::coordination_number);
     visit("mean_force", "N", &Scan::mean_force, &ScanRow::mean_force);

@@ -12,6 +12,7 @@ struct ScanRow {
     double time, plate_z;
     double wall_force[wall_count][3];
     double kinetic_energy, elastic_energy, rate_error;
+    double wall_work, weight_work, damping_loss, friction_loss, drag_loss, energy_error;
     double coordination_number, mean_force, packing_fraction, branch_length, max_overlap;
     double stress[3][3], fabric[3][3];
     double strain[6];

@@ -54,6 +54,12 @@ py::dtype scan_type() {
         .add("plate_z", &Scan::plate_z, "f8")
         .add("kinetic_energy", &Scan::kinetic_energy, "f8")
         .add("elastic_energy", &Scan::elastic_energy, "f8")
+        .add("wall_work", &Scan::wall_work, "f8")
+        .add("weight_work", &Scan::weight_work, "f8")
+        .add("damping_loss", &Scan::damping_loss, "f8")
+        .add("friction_loss", &Scan::friction_loss, "f8")
+        .add("drag_loss", &Scan::drag_loss, "f8")
+        .add("energy_error", &Scan::energy_error, "f8")
         .add("rate_error", &Scan::rate_error, "f8")
         .add("coordination_number", &Scan::coordination_number, "f8")
         .add("mean_force", &Scan::mean_force, "f8")
@@ -165,7 +171,8 @@ void bind_scan_arrays(py::class_<OneRecording>& recording) {
             "scans", list_property(&Recording::scans, scan_type),
             "[S] rows with the fields of /observables in run.h5: frame, cycle, phase (0 load, 1 "
             "unload), settled, time [s], plate_z [m], kinetic_energy [J], elastic_energy [J], "
-            " rate_error, coordination_number, mean_force [N], packing_fraction, "
+            "wall_work, weight_work, damping_loss, friction_loss, drag_loss, energy_error (the energy budget) "
+            "[J], rate_error, coordination_number, mean_force [N], packing_fraction, "
             "branch_length [m].")
         .def_property_readonly(
             "wall_force", column(&Scan::wall_force, {6, 3}),

@@ -141,14 +141,6 @@ double time_step_of(const Replica& replica, const GrainMaterial& material, doubl
     return replica.numerics.time_step * pi * radius / rayleigh_speed(material);
 }
 
-/// Restitution of the pair of species with the smallest energy loss.
-double max_restitution(const Replica& replica) {
-    double most = 0;
-    for (std::size_t i = 0; i < std::max<std::size_t>(1, replica.species.size()); ++i)
-        for (std::size_t j = 0; j <= i; ++j) most = std::max(most, pair_law(replica, i, j).restitution);
-    return most;
-}
-
 }  // namespace
 
 double list_reach(const Replica& replica, const Packing& packing) {
@@ -183,17 +175,11 @@ double time_step(const Replica& replica, double radius) {
     return shortest;
 }
 
-/// The stability limit over a report's frequency is proportional to the fifth root of the damping, because
-/// the phase error of the extrapolation is proportional to the fifth power of the step (ARCHITECTURE.md). 0.7
-/// was measured at a restitution of 0.95. Weakly damped contacts gain energy only slowly.
-double stable_phase(double restitution) {
-    return 0.7 * std::clamp(std::pow(damping_factor(restitution) / damping_factor(0.95), 0.2), 0.5, 1.0);
-}
+/// Contacts stiffen within an interval, and modes are mixed.
+constexpr double part_of_stable_step = 0.9;
 
-int shortening(const Replica& replica, double time_step, double frequency, int now) {
-    const ContactModel model = replica.contact.model;
-    if (model != ContactModel::elastic_sphere && model != ContactModel::hyperelastic_sphere) return 0;
-    const double ratio = time_step * frequency / stable_phase(max_restitution(replica));
+int shortening(double time_step, double step_rate, int now) {
+    const double ratio = time_step * step_rate / part_of_stable_step;
     const int needed = ratio > 1 ? static_cast<int>(std::ceil(8 * std::log2(std::min(ratio, 1e3)))) : 0;
     const bool keep = needed <= now && now < needed + 5;
     return keep ? now : std::min(needed, max_shortening);

@@ -19,9 +19,9 @@ double time_step(const Replica& replica, const Packing& packing);
 double time_step(const Replica& replica, double radius);
 
 /// Shortening of the time step that keeps delayed surface displacements stable when contacts stiffen, for the
-/// `frequency` of a report [rad/s]: the number of factors of the eighth root of two. `now` is the current
+/// `step_rate` of a report [1/s]: the number of factors of the eighth root of two. `now` is the current
 /// number. It decreases only if steps may be half as long again.
-int shortening(const Replica& replica, double time_step, double frequency, int now);
+int shortening(double time_step, double step_rate, int now);
 double shortened(double time_step, int shortening);
 inline constexpr int max_shortening = 40;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/container.h"
 #include "core/errors.h"
@@ -84,6 +85,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
       plate_moved_(replicas_.size(), 0),
       plate_z_(replicas_.size(), 0),
       strain_(replicas_.size(), Strain{}),
+      weight_work_(replicas_.size(), 0),
       steps_made_(replicas_.size(), 0),
       device_replicas_(any_device_replicas(build_, replicas_, packings, layout_)),
       fields_(device,
@@ -93,6 +95,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
     for (int r = 0; r < layout_.replicas(); ++r) {
         time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));
         shortening_.push_back(0);
+        extra_shortening_.push_back(0);
         excess_compliance_.push_back(mcdem::excess_compliance(replicas_[r], packings[r].size()));
         reach_.push_back(list_reach(replicas_[r], packings[r]));
         std::visit(
@@ -132,7 +135,16 @@ void Engine::upload_packings(const std::vector<Packing>& packings) {
     write_reals(fields_.tracks, 0, tracks);
 }
 
-double Engine::time_step(int replica) const { return shortened(time_step_[replica], shortening_[replica]); }
+double Engine::time_step(int replica) const {
+    return shortened(time_step_[replica],
+                     std::min(shortening_[replica] + extra_shortening_[replica], max_shortening));
+}
+
+bool Engine::shorten(int replica) {
+    if (shortening_[replica] + extra_shortening_[replica] >= max_shortening) return false;
+    extra_shortening_[replica] += 4;
+    return true;
+}
 
 /// Speed of the plate, or of a cell's motion between two grains at the reach of the list [m/s].
 double Engine::speed_of_walls(int replica, const StepInterval& interval) const {
@@ -239,6 +251,7 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     for (int r : stale.replicas) {
         rebuild_[r] = 0;
         plate_moved_[r] = 0;
+        weight_work_[r] = 0;
     }
 }
 
@@ -270,9 +283,9 @@ void Engine::measure() {
     auto& f = fields_;
     kernels_.measure(working_.blocks.size(), f.replicas, f.materials, f.blocks, f.stop_at, f.motion.now(0),
                      f.partner, f.partner_slot, f.displacement.now(0), f.memory_of_contacts, f.tracks,
-                     f.force, f.overlap, f.arm, f.energy, f.frequency);
-    kernels_.reduce(working_.portions.size(), f.replicas, f.portions, f.partner, f.force, f.energy,
-                    f.frequency, f.status, f.reports);
+                     f.force, f.overlap, f.arm, f.energy);
+    kernels_.reduce(working_.portions.size(), f.replicas, f.portions, f.partner, f.force, f.energy, f.tracks,
+                    f.status, f.reports);
     if (f.has_cells())
         kernels_.cell_stress(working_.portions.size(), f.replicas, f.portions, f.stop_at, f.motion.now(0),
                              f.partner, f.force, f.cell_moments);
@@ -301,9 +314,15 @@ template <class Report>
 IntervalResult to_result(const Report& report) {
     IntervalResult result;
     result.kinetic_energy = report.kinetic_energy;
-    result.elastic_energy = report.elastic_energy;
+    result.elastic_energy = double(report.elastic_energy) + report.spring_energy;
+    result.spring_energy = report.spring_energy;
+    result.weight_work = report.weight_work;
+    result.work = report.work;
+    result.damped = report.damped;
+    result.rubbed = report.rubbed;
+    result.dragged = report.dragged;
     result.deepest_overlap = report.deepest_overlap;
-    result.frequency = report.frequency;
+    result.step_rate = report.step_rate;
     for (int w = 0; w < wall_count; ++w)
         result.wall_force[w] = {report.wall_force[3 * w], report.wall_force[3 * w + 1],
                                 report.wall_force[3 * w + 2]};
@@ -316,9 +335,15 @@ template <class Report>
 void add(Report& sum, const Report& portion) {
     sum.kinetic_energy += portion.kinetic_energy;
     sum.elastic_energy += portion.elastic_energy;
+    sum.spring_energy += portion.spring_energy;
+    sum.weight_work += portion.weight_work;
+    sum.work += portion.work;
+    sum.damped += portion.damped;
+    sum.rubbed += portion.rubbed;
+    sum.dragged += portion.dragged;
     sum.moved_squared = std::max(sum.moved_squared, portion.moved_squared);
     sum.deepest_overlap = std::max(sum.deepest_overlap, portion.deepest_overlap);
-    sum.frequency = std::max(sum.frequency, portion.frequency);
+    sum.step_rate = std::max(sum.step_rate, portion.step_rate);
     for (int q = 0; q < 3 * wall_count; ++q) sum.wall_force[q] += portion.wall_force[q];
     sum.status |= portion.status;
     if (sum.failed_grain < 0) sum.failed_grain = portion.failed_grain;
@@ -366,6 +391,8 @@ std::vector<IntervalResult> Engine::finish_interval() {
                 if (intervals[r].steps == 0) continue;
                 auto& result = results[r] = to_result(reports[r]);
                 result.steps = made[r];
+                result.weight_work =
+                    reports[r].weight_work - std::exchange(weight_work_[r], reports[r].weight_work);
                 if (is_cell(replicas_[r].box)) {
                     result.stress = stresses[r];
                     result.wall_force = face_forces(deformed(replicas_[r].box, strain_[r]), stresses[r]);
@@ -381,7 +408,7 @@ std::vector<IntervalResult> Engine::finish_interval() {
                 rebuild_[r] = made[r] < intervals[r].steps ||
                               plate_moved_[r] > margin_of_walls(replicas_[r]) * limit ||
                               !(reports[r].moved_squared <= own_limit * own_limit);
-                shortening_[r] = shortening(replicas_[r], time_step_[r], result.frequency, shortening_[r]);
+                shortening_[r] = shortening(time_step_[r], result.step_rate, shortening_[r]);
             }
         },
         device_replicas_);

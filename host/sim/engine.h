@@ -29,11 +29,17 @@ struct StepInterval {
 
 /// Result of an interval.
 struct IntervalResult {
-    int steps = 0;               ///< steps made; fewer than requested if the neighbour list had to be rebuilt
-    double kinetic_energy = 0;   ///< [J]
-    double elastic_energy = 0;   ///< [J]
+    int steps = 0;              ///< steps made; fewer than requested if the neighbour list had to be rebuilt
+    double kinetic_energy = 0;  ///< [J]
+    double elastic_energy = 0;  ///< of contacts, surfaces and springs [J]
+    double spring_energy = 0;   ///< of the springs of friction and rolling resistance [J]
+    double weight_work = 0;     ///< by the weight, in this interval like all below [J]
+    double work = 0;            ///< by the plate or by the motion of a cell [J]
+    double damped = 0;          ///< dissipated by normal damping [J]
+    double rubbed = 0;   ///< work of tangential forces and couples, dissipated or stored in springs [J]
+    double dragged = 0;  ///< dissipated by drag [J]
     double deepest_overlap = 0;  ///< corrected overlap over the sum of radii
-    double frequency = 0;  ///< upper estimate of the highest vibration frequency (kernels/measure.cl) [rad/s]
+    double step_rate = 0;        ///< inverse of the longest stable time step (kernels/stable_step.h) [1/s]
     std::array<Vec3, wall_count> wall_force = no_wall_forces();  ///< on the walls [N]
     Mat3 stress = unknown_tensor();  ///< of a cell, compression positive (core/stress.h) [Pa]
     int status = 0;                  ///< STATUS_* bits
@@ -73,6 +79,9 @@ public:
     /// Maximum number of steps of the interval for its plate velocity or strain rate, so that the neighbour
     /// list remains valid.
     int max_interval(int replica, const StepInterval& interval) const;
+    /// Shortens the time step of the next intervals by a factor of the square root of two, beyond what the
+    /// reports require. Returns false if it is as short as possible.
+    bool shorten(int replica);
     /// Maximum displacement of the plate in an interval of more than one step [m].
     double max_plate_move(int replica) const;
     /// Device memory in use [bytes].
@@ -142,6 +151,7 @@ private:
     Layout layout_;
     std::vector<double> time_step_;                       ///< of the scene [s]
     std::vector<int> shortening_;                         ///< of the time step (device_replica.h)
+    std::vector<int> extra_shortening_;                   ///< of it, by shorten()
     std::vector<double> skin_;                            ///< [m]
     std::vector<std::vector<double>> excess_compliance_;  ///< E/E_i - 1 by the user's grain numbers
     std::vector<char> rebuild_;                           ///< 1: the neighbour list must be rebuilt
@@ -149,6 +159,7 @@ private:
     std::vector<double> plate_moved_;  ///< since the list was built; for a cell, at its ends [m]
     std::vector<double> plate_z_;      ///< at the end of the last interval [m]
     std::vector<Strain> strain_;       ///< of a cell, at the end of the last interval
+    std::vector<double> weight_work_;  ///< of the weight since the list was built [J]
     std::vector<long> steps_made_;
     std::vector<char> active_;             ///< whether a replica is in working_
     Part working_;                         ///< the active replicas, as uploaded to the device

@@ -246,6 +246,8 @@ std::map<std::string, std::vector<std::byte>> Engine::save() {
     keep("strain", strain_);
     keep("steps_made", steps_made_);
     keep("shortening", shortening_);
+    keep("extra_shortening", extra_shortening_);
+    keep("weight_work", weight_work_);
     return saved;
 }
 
@@ -272,9 +274,12 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
     bring_back("strain", strain_);
     bring_back("steps_made", steps_made_);
     bring_back("shortening", shortening_);
+    bring_back("extra_shortening", extra_shortening_);
+    bring_back("weight_work", weight_work_);
     if (!std::ranges::all_of(steps_made_, [](auto steps) { return steps >= 0; }))
         refuse_checkpoint("it holds a negative number of steps");
-    if (!std::ranges::all_of(shortening_, [](int times) { return times >= 0 && times <= max_shortening; }))
+    const auto possible = [](int times) { return times >= 0 && times <= max_shortening + 4; };
+    if (!std::ranges::all_of(shortening_, possible) || !std::ranges::all_of(extra_shortening_, possible))
         refuse_checkpoint("it holds an invalid time step");
 }
 

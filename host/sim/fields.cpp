@@ -40,8 +40,7 @@ void Fields::visit_extents(const FieldExtents& extents, Make make) {
     make_pair(motion, extents.grains, reals_of_motion * real);
     make(tracks, extents.grains, reals_of_track * real);
     make(status, extents.grains, sizeof(int));
-    make(energy, extents.grains, 4 * real);
-    make(frequency, extents.grains, real);
+    make(energy, extents.grains, reals_of_energy * real);
     make(partner, slots, sizeof(int));
     const std::uint64_t moving_slots = extents.needs.displacements ? slots : 1;
     make(partner_slot, moving_slots, sizeof(int));

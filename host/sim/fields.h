@@ -29,7 +29,6 @@ struct Force;
 struct Overlap;
 struct Arm;
 struct Energy;
-struct Frequency;
 struct Reports;
 struct CellMoments;
 
@@ -46,8 +45,10 @@ struct Pair {
 inline constexpr std::size_t reals_of_motion = 12;
 
 /// Number of reals of a grain in the field Tracks: position at the last list rebuild and one unused,
-/// rotation.
-inline constexpr std::size_t reals_of_track = 8;
+/// rotation, work in the interval.
+inline constexpr std::size_t reals_of_track = 12;
+/// .. in the field Energy: energies and rates that are summed over a replica.
+inline constexpr std::size_t reals_of_energy = 8;
 
 /// Optional fields that a batch needs.
 struct FieldNeeds {
@@ -99,7 +100,6 @@ struct Fields {
     Field<Tracks> tracks;
     Field<Status> status;
     Field<Energy> energy;
-    Field<Frequency> frequency;
     Field<Partner> partner;                  ///< per slot, like all fields below
     Field<PartnerSlot> partner_slot;         ///< index into displacement; slot_count if there is none
     Pair<SurfaceDisplacement> displacement;  ///< with one more element at slot_count, always zero
@@ -157,9 +157,9 @@ struct Kernels {
         advance;
     Kernel<Field<Constants>, Field<Materials>, Field<Blocks>, Field<StopAt>, Now<Motion>, Field<Partner>,
            Field<PartnerSlot>, Now<SurfaceDisplacement>, Field<ContactMemory>, Field<Tracks>, Field<Force>,
-           Field<Overlap>, Field<Arm>, Field<Energy>, Field<Frequency>>
+           Field<Overlap>, Field<Arm>, Field<Energy>>
         measure;
-    Kernel<Field<Constants>, Field<Portions>, Field<Partner>, Field<Force>, Field<Energy>, Field<Frequency>,
+    Kernel<Field<Constants>, Field<Portions>, Field<Partner>, Field<Force>, Field<Energy>, Field<Tracks>,
            Field<Status>, Field<Reports>>
         reduce;
     Kernel<Field<Constants>, Field<Portions>, Field<StopAt>, Now<Motion>, Field<Partner>, Field<Force>,

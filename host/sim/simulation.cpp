@@ -84,6 +84,33 @@ std::string cause_of(const IntervalResult& result, const Replica& replica, int s
     return cause;
 }
 
+std::string created_energy(double created) {
+    return fmt::format(
+        "the time step has created energy, {:.1f} % of the largest stored energy: the dissipated energy "
+        "falls "
+        "(lower numerics.time_step or compress less; or set numerics.precision = \"double\" if overlaps are "
+        "below 1e-4 of a diameter)",
+        100 * created);
+}
+
+/// Why the forces on the walls and the weight [N] do not balance although the grains are at rest; empty if
+/// they do. At rest the net force on a grain is below protocol.settle_unbalanced_force of the pressure, and
+/// the sum over all grains is much smaller than that times their number.
+constexpr double max_imbalance = 0.05;
+std::string imbalance(const IntervalResult& result, double weight) {
+    Vec3 net(0, 0, weight);
+    double largest = 0;
+    for (const Vec3& force : result.wall_force) {
+        net += force;
+        largest = std::max(largest, force.norm());
+    }
+    if (net.norm() <= max_imbalance * largest) return "";
+    return fmt::format(
+        "the grains are at rest, but the forces on walls and the weight do not balance: {:.3g} N are left of "
+        "{:.3g} N (lower numerics.time_step)",
+        net.norm(), largest);
+}
+
 std::vector<Packing> true_packings(const std::vector<Replica>& replicas, std::vector<Packing> stated) {
     for (std::size_t r = 0; r < stated.size(); ++r)
         stated[r] = true_packing(replicas[r], std::move(stated[r]));
@@ -123,6 +150,7 @@ Simulation::Simulation(Device& device, const Scene& scene, std::vector<Packing> 
         expect_countable_steps(scene_.replicas[r], engine_.time_step(r));
         runners_.emplace_back(scene_.replicas[r], engine_.time_step(r), scale_[static_cast<std::size_t>(r)]);
         plates_.emplace_back(scene_.replicas[r]);
+        budgets_.emplace_back(scene_.replicas[r], scale_[static_cast<std::size_t>(r)]);
     }
 }
 
@@ -166,11 +194,23 @@ bool Simulation::take_note(int replica, const IntervalResult& result) {
     auto& runner = runners_[replica];
     const bool relaxes = runner.state().stage == ProtocolState::Stage::relax;
     plates_[replica].on_interval_done(result);
-    Outcome outcome{replica, result, {}, {}};
+    budgets_[replica].add(result);
+    Outcome outcome{replica, result, budgets_[replica].terms(), {}, {}};
+    if (budgets_[replica].verdict() == EnergyBudget::Verdict::creates_energy && engine_.shorten(replica))
+        budgets_[replica].correct();
     outcome.scan = runner.on_interval_done(result, plates_[replica].arrived(engine_.max_plate_move(replica)));
     if (result.status) {
         outcome.scan.reset();
         outcome.failure = failure(replica, result, relaxes);
+        runner.stop();
+    } else if (budgets_[replica].verdict() == EnergyBudget::Verdict::too_much_created) {
+        outcome.scan.reset();
+        outcome.failure = Failure{runner.state().step, -1, created_energy(budgets_[replica].created())};
+        runner.stop();
+    } else if (outcome.scan && outcome.scan->settled && !is_cell(scene_.replicas[replica].box) &&
+               !imbalance(result, scale_[replica].weight).empty()) {
+        outcome.scan.reset();
+        outcome.failure = Failure{runner.state().step, -1, imbalance(result, scale_[replica].weight)};
         runner.stop();
     } else if (!runner.hindrance().empty()) {
         outcome.failure = Failure{runner.state().step, -1, runner.hindrance()};
@@ -208,7 +248,7 @@ std::vector<Scan> Simulation::scans() const {
 }
 
 Scan Simulation::scan(const Outcome& outcome, ReplicaState state) const {
-    const auto& [replica, result, tag, _] = outcome;
+    const auto& [replica, result, energy, tag, _] = outcome;
     Scan scan;
     scan.frame = tag->frame;
     scan.cycle = tag->cycle;
@@ -222,6 +262,12 @@ Scan Simulation::scan(const Outcome& outcome, ReplicaState state) const {
     scan.wall_force = result.wall_force;
     scan.kinetic_energy = result.kinetic_energy;
     scan.elastic_energy = result.elastic_energy;
+    scan.wall_work = energy.wall_work;
+    scan.weight_work = energy.weight_work;
+    scan.damping_loss = energy.damping_loss;
+    scan.friction_loss = energy.friction_loss;
+    scan.drag_loss = energy.drag_loss;
+    scan.energy_error = energy.energy_error;
     scan.position = std::move(state.position);
     scan.rotation = std::move(state.rotation);
     scan.contacts = std::move(state.contacts);
@@ -233,6 +279,9 @@ Scan Simulation::scan(const Outcome& outcome, ReplicaState state) const {
 }
 
 Failure Simulation::failure(int replica, const IntervalResult& result, bool relaxes) const {
+    const EnergyBudget& budget = budgets_[static_cast<std::size_t>(replica)];
+    if (budget.verdict() == EnergyBudget::Verdict::too_much_created)
+        return {runners_[replica].state().step, result.failed_grain, created_energy(budget.created())};
     return {runners_[replica].state().step, result.failed_grain,
             cause_of(result, scene_.replicas[replica], scene_.slots, relaxes)};
 }
@@ -256,6 +305,7 @@ std::map<std::string, std::vector<std::byte>> Simulation::save() {
     };
     keep("protocol", runners_);
     keep("plates", plates_);
+    keep("budgets", budgets_);
     return saved;
 }
 
@@ -278,6 +328,7 @@ void Simulation::restore(const std::map<std::string, std::vector<std::byte>>& sa
     };
     bring_back("protocol", runners_);
     bring_back("plates", plates_);
+    bring_back("budgets", budgets_);
 }
 
 Recording begin_recording(const Replica& replica, const Packing& packing) {

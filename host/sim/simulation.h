@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/compliant_plate.h"
+#include "sim/energy_budget.h"
 #include "sim/engine.h"
 #include "sim/protocol.h"
 
@@ -44,6 +45,7 @@ private:
     struct Outcome {
         int replica;
         IntervalResult result;
+        EnergyTerms energy;
         std::optional<ProtocolRunner::ScanTag> scan;
         std::optional<Failure> failure;
     };
@@ -61,6 +63,7 @@ private:
     Engine engine_;
     std::vector<ProtocolRunner> runners_;
     std::vector<CompliantPlate> plates_;
+    std::vector<EnergyBudget> budgets_;
     std::vector<Outcome> outcomes_;   ///< not passed on yet
     std::vector<Readings> readings_;  ///< the states for the scans among them
     long grain_steps_ = 0;

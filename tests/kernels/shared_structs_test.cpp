@@ -42,8 +42,9 @@ kernel void write_offsets(global int* offsets) {
     MEMBER(plasticity) MEMBER(bulge_contacts) MEMBER(mindlin_share) MEMBER(rolling_resistance) \
     MEMBER(effects) MEMBER(container) MEMBER(slot_count) MEMBER(batch_size)
 #define MEMBERS_OF_REPORT(MEMBER) \
-    MEMBER(kinetic_energy) MEMBER(elastic_energy) MEMBER(moved_squared) MEMBER(deepest_overlap) \
-    MEMBER(frequency) MEMBER(wall_force) MEMBER(status) MEMBER(failed_grain)
+    MEMBER(kinetic_energy) MEMBER(elastic_energy) MEMBER(weight_work) MEMBER(spring_energy) \
+    MEMBER(work) MEMBER(damped) MEMBER(rubbed) MEMBER(dragged) MEMBER(moved_squared) \
+    MEMBER(deepest_overlap) MEMBER(step_rate) MEMBER(wall_force) MEMBER(status) MEMBER(failed_grain)
 // clang-format on
 
 #define NAME_REPLICA(member) "REPLICA(" #member ")"
