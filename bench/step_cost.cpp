@@ -18,7 +18,11 @@ constexpr double own_displacement = 4;
 constexpr double contact_point = 5 + 1;
 constexpr double sliding = 9 + 18 + 2;  // both spins, v_t, limit
 constexpr double saturated = 6 + inverse_root + 1 + 1 + 3;
-constexpr double mindlin = 6 + 5 + 6 + 9 + 6 + 1 + 3 + 1 + 12 + 2 + 3;
+constexpr double turn = 2 + 3 + 7 + 2 + 6;  // distance, spins, twist, half change, middle normal
+constexpr double turned_spring =
+    12 + 8 + 3 + 9 + 6;  // level, cosine and sine, cosine part, cross product, sine part
+constexpr double kept_force = 6;
+constexpr double mindlin = turn + turned_spring + kept_force + 2 + 3 + 3 + 7 + 6 + 12 + 2 + 6;
 constexpr double force_and_torque = 6 + 18;
 constexpr double checks = 2 + 1;
 // Of a pair of slots, both displacements:
@@ -55,10 +59,10 @@ StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision
 
     // Reals: position, velocity, spin and rotation are read and written (4 each), the listed position is
     // read. Per slot, the predicted displacement and those of two and four steps before are read, the next
-    // prediction and this step's displacement are written; the three spring components are read and written.
-    // Integers: partner, and partner slot if surfaces move. The values of neighbours are read by the
-    // neighbours anyway and count as cached.
-    const double reals = 2 * 4 * 4 + 4 + slots * ((bulging ? 5 : 0) + (springs ? 6 : 0));
+    // prediction and this step's displacement are written; the three spring components and the contact radius
+    // are read and written. Integers: partner, and partner slot if surfaces move. The values of neighbours
+    // are read by the neighbours anyway and count as cached.
+    const double reals = 2 * 4 * 4 + 4 + slots * ((bulging ? 5 : 0) + (springs ? 8 : 0));
     const double integers = slots * (bulging ? 2 : 1);
 
     const double friction_flops = springs ? mindlin : saturated;

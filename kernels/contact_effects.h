@@ -93,11 +93,12 @@ INLINE lanes attraction_energy(Attraction a, lanes overlap, lanes approach) {
 
 /* Rolling resistance: a spring between the rotations of two grains across the normal, with stiffness
    k_r = 8 G* a R*^2 (Iwashita & Oda 1998: the tangential stiffness times R*^2), damped as the tangential
-   spring is, and cut at the torque mu_r R* F_n (Ai et al. 2011, model C). Twisting is not resisted. `spring`
-   is that of the tangential force with the limit F_n. Returns the torque on this grain [N m]; updates
-   `rotation`. */
+   spring is, and cut at the torque mu_r R* F_n (Ai et al. 2011, model C). It keeps its couple while the
+   normal load increases, with every law of friction. Twisting is not resisted. `spring` is that of the
+   tangential force with the limit F_n. Returns the torque on this grain [N m]; updates the spring's `couple`.
+ */
 INLINE lanes3 rolling_couple(Grain at, Neighbours neighbour, lanes reduced_radius, SpringTerms spring,
-                             real elapsed, lanes3* restrict rotation) {
+                             real elapsed, lanes3* restrict couple, lanes* restrict power) {
     const lanes r = at.now.radius, r_there = neighbour.radius;
     lanes fifth = r * r * r * r * r;
     lanes fifth_there = r_there * r_there * r_there * r_there * r_there;
@@ -107,9 +108,10 @@ INLINE lanes3 rolling_couple(Grain at, Neighbours neighbour, lanes reduced_radiu
 #endif
     spring.limit *= at.replica->rolling_resistance * reduced_radius;
     spring.stiffness *= reduced_radius * reduced_radius;
+    spring.kept = fmin(spring.kept, (lanes)(R(1)));
     spring.reduced_mass = at.materials->density * (R(8) / R(15)) * PI *
                           WHERE(neighbour.wall, fifth, R(1) / (R(1) / fifth + R(1) / fifth_there));
     const lanes3 turning = subtract3(neighbour.spin, at.now.spin);
     const lanes3 rolling = add_scaled3(turning, -dot3(turning, neighbour.normal), neighbour.normal);
-    return cut_spring(spring, rolling, neighbour.normal, elapsed, rotation);
+    return cut_spring(spring, rolling, neighbour.normal, elapsed, couple, power);
 }

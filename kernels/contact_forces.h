@@ -98,9 +98,21 @@ INLINE lanes shear_stiffness(Grain at, const int effects, Neighbours neighbour, 
     return R(8) * modulus * contact_radius;
 }
 
-/* Tangential velocity of the other surface relative to this one at the contact point. */
-INLINE lanes3 sliding_velocity(Grain at, Neighbours neighbour, lanes arm, lanes separating) {
-    const lanes3 turn = add_scaled3(scale3(neighbour.distance - arm, neighbour.spin), arm, at.now.spin);
+/* Adds to `terms` what its springs need. Updates the contact radius in `memory`. */
+INLINE void set_springs(Grain at, const int effects, Neighbours neighbour, lanes contact_radius, real elapsed,
+                        Memory* restrict memory, SpringTerms* restrict terms) {
+    terms->kept = kept_force(at.replica, contact_radius, &memory->radius);
+    terms->stiffness = shear_stiffness(at, effects, neighbour, memory->radius);
+    terms->turn = turn_of(at, neighbour, elapsed);
+}
+
+/* Tangential velocity of the other surface relative to this one at the contact point, which is `arm` and
+   `arm_there` from the two centres. Both sides get the same bits, with opposite signs. */
+INLINE lanes3 sliding_velocity(Grain at, Neighbours neighbour, lanes arm, lanes arm_there, lanes separating) {
+    const lanes3 here = at.now.spin, there = neighbour.spin;
+    const lanes3 turn = {add_alike(arm * here.x, arm_there * there.x),
+                         add_alike(arm * here.y, arm_there * there.y),
+                         add_alike(arm * here.z, arm_there * there.z)};
     return subtract3(add_scaled3(neighbour.velocity, -separating, neighbour.normal),
                      cross3(turn, neighbour.normal));
 }
@@ -119,9 +131,10 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours neighbour
     c.damped = damping_force * separating;
 
     /* The contact point is midway between the two displaced surfaces (Brodu et al. 2015). */
-    const lanes midway = R(0.5) * (neighbour.distance + (radius + c.displacement) -
-                                   (neighbour.radius + pressed.displacement_there));
-    c.arm = WHERE(c.touching, WHERE(neighbour.wall, neighbour.distance, midway), radius + c.displacement);
+    const lanes outer = radius + c.displacement, outer_there = neighbour.radius + pressed.displacement_there;
+    const lanes midway = R(0.5) * (neighbour.distance + outer - outer_there);
+    const lanes arm_there = R(0.5) * (neighbour.distance + outer_there - outer);
+    c.arm = WHERE(c.touching, WHERE(neighbour.wall, neighbour.distance, midway), outer);
 
     lanes pressing = normal_force, limiting = fmax(normal_force, (lanes)(R(0)));
     if (effects) c.energy = effect_energy(replica, c.elastic, pressed.relaxed_force, c.overlap, pair.radius);
@@ -132,17 +145,25 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours neighbour
         c.energy += attraction_energy(pull, c.overlap, c.approach);
     }
 
-    SpringTerms terms = {OF_PAIRS(at, friction, neighbour) * limiting, R(0), damping, pair.mass, c.touching};
-    if (replica->mindlin || effects & EFFECT_ROLLING_RESISTANCE)
-        terms.stiffness = shear_stiffness(at, effects, neighbour, c.radius);
-    const lanes3 sliding = sliding_velocity(at, neighbour, c.arm, separating);
-    c.tangential = friction(replica, effects, terms, sliding, neighbour.normal, elapsed, &memory->spring);
-    c.rubbed = dot3(c.tangential, sliding);
-    c.spring_energy =
-        R(0.5) * replica->mindlin_share * terms.stiffness * dot3(memory->spring, memory->spring);
+    SpringTerms terms = {
+        .limit = OF_PAIRS(at, friction, neighbour) * limiting,
+        .damping = damping,
+        .reduced_mass = pair.mass,
+        .touching = c.touching,
+    };
+    if (has_springs(replica, effects)) set_springs(at, effects, neighbour, c.radius, elapsed, memory, &terms);
+    const lanes3 sliding = sliding_velocity(at, neighbour, c.arm, arm_there, separating);
+    c.tangential =
+        friction(replica, effects, terms, sliding, neighbour.normal, elapsed, &memory->spring, &c.rubbed);
+    c.spring_energy = R(0);
+    if (replica->mindlin)
+        c.spring_energy = replica->mindlin_share * spring_energy(memory->spring, terms.stiffness);
     if (effects & EFFECT_ROLLING_RESISTANCE) {
         terms.limit = fmax(normal_force, (lanes)(R(0)));
-        c.couple = rolling_couple(at, neighbour, pair.radius, terms, elapsed, &memory->rolling);
+        lanes rolled;
+        c.couple = rolling_couple(at, neighbour, pair.radius, terms, elapsed, &memory->rolling, &rolled);
+        c.rubbed += rolled;
+        c.spring_energy += spring_energy(memory->rolling, terms.stiffness * pair.radius * pair.radius);
     }
     c.force = add_scaled3(c.tangential, -pressing, neighbour.normal);
     return c;

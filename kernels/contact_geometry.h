@@ -37,6 +37,40 @@ INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there
     return foot;
 }
 
+/* How the pair of a contact has turned in the last step, for the springs in the contact. */
+typedef struct {
+    lanes3 middle; /* normal minus half its change: along the bisector of the normals before and after */
+    lanes twist;   /* about the normal [rad] */
+} Turn;
+
+/* The turn in the time `elapsed` that ends now.
+   The normal turns with the relative velocity of the centres. With the tangent s of its angle,
+   tan(angle/2) = s/2 (1 - s^2/4 + s^4/8 - ..).
+   That of a plane wall does not turn. That of a cylinder's wall turns with the motion about the axis.
+   The twist is that of the mean spin (omega_i + omega_j) / 2; a wall's spin is zero. A spring is the vector
+   between two points that touched when it began, one on each body, and the end on a body turns with that
+   body. How far each of them is from the line of centres is not stored, so each side counts half: exact if
+   both turn alike or if equal spheres are sheared, and between the limits of a grain that has slid along a
+   wall (its end is on its axis and does not turn) and one that has rolled (it does). */
+INLINE Turn turn_of(Grain at, Neighbours neighbour, real elapsed) {
+    const lanes separating = dot3(neighbour.velocity, neighbour.normal);
+    lanes3 across = add_scaled3(neighbour.velocity, -separating, neighbour.normal);
+    lanes distance = neighbour.distance - elapsed * separating;
+    mask turns = NOT(neighbour.wall);
+    if (at.replica->container == CONTAINER_CYLINDER) { /* only its curved wall is not horizontal */
+        const mask curved = neighbour.wall & AS_MASK(fabs(neighbour.normal.z) < R(0.5));
+        across.z = WHERE(curved, R(0), across.z);
+        distance -= WHERE(curved, cylinder_radius(at.replica), R(0));
+        turns |= curved & AS_MASK(fabs(distance) > R(0));
+    }
+    const lanes3 spins = add3(neighbour.spin, at.now.spin);
+    const lanes half = WHERE(turns, R(0.5) * elapsed / WHERE(turns, distance, R(1)), R(0));
+    const lanes square = half * half * dot3(across, across); /* s^2/4 */
+    const lanes bisecting = half * (R(1) - square * (R(1) - R(2) * square));
+    return (Turn){add_scaled3(neighbour.normal, -bisecting, across),
+                  R(0.5) * elapsed * dot3(spins, neighbour.normal)};
+}
+
 INLINE Neighbours gather_neighbours(Grain at, const int effects, global const Motion* restrict motion,
                                     slots partner) {
     const mask wall = AS_MASK(partner < NO_PARTNER);

@@ -41,8 +41,9 @@ typedef struct {
     int surface;         /* SURFACE_* below */
     int finite_contacts; /* 1: size and self terms of the sphere are not zero */
     int confinement;     /* 1: confinement coupling of some species is not zero */
-    int mindlin;         /* 1: Mindlin friction, alone or in the weighted mean */
+    int mindlin;         /* MINDLIN_* below: Mindlin friction, alone or in the weighted mean; 0: none */
     int memory_rows;     /* rows of contact memory (contact_memory.h); Mindlin springs take the first three */
+    int radius_row;      /* row of the contact radius, with Mindlin friction or rolling resistance */
     int deepest_row;     /* row of plasticity */
     int relaxed_row;     /* row of viscoelasticity */
     int rolling_row;     /* first of the three rows of rolling resistance */
@@ -59,6 +60,9 @@ typedef struct {
 #define CONTAINER_CYLINDER 1
 #define CONTAINER_PERIODIC 2
 #define CONTAINER_CELL 3
+
+#define MINDLIN_FORCE 1        /* the spring keeps its force while the normal load increases */
+#define MINDLIN_DISPLACEMENT 2 /* .. its displacement */
 
 #define SURFACE_RIGID 0      /* independent contacts */
 #define SURFACE_HALF_SPACE 1 /* Brodu et al. 2015, Eq. 1, at the deformed contact points */

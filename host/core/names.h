@@ -22,7 +22,8 @@ enum class ContactModel {
 
 enum class FrictionLaw {
     saturated,  ///< |F_t| = mu F_n against the sliding velocity
-    mindlin,    ///< tangential spring with history, limited to mu F_n
+    mindlin,    ///< tangential spring, limited to mu F_n, whose force does not grow with the normal load
+    mindlin_displacement,  ///< .. whose displacement is kept instead, as in LIGGGHTS
 };
 
 /// Boundary at the sides, between floor and plate.
@@ -59,7 +60,8 @@ inline constexpr std::array<std::string_view, 7> name_list<ContactModel>{
     "independent", "point_force_on_sphere", "sphere_to_sphere",   "elastic_half_space",
     "mc_dem",      "elastic_sphere",        "hyperelastic_sphere"};
 template <>
-inline constexpr std::array<std::string_view, 2> name_list<FrictionLaw>{"saturated", "mindlin"};
+inline constexpr std::array<std::string_view, 3> name_list<FrictionLaw>{"saturated", "mindlin",
+                                                                        "mindlin_displacement"};
 template <>
 inline constexpr std::array<std::string_view, 4> name_list<ContainerShape>{"box", "cylinder", "periodic",
                                                                            "cell"};

@@ -99,7 +99,8 @@ struct Effects {
     double plasticity = 0;  ///< fraction of the largest overlap that remains after unloading
     double bulge_contacts =
         1;  ///< fraction of the surface displacement that counts where undeformed grains do not overlap
-    double friction_history = 0;    ///< weight of the friction law that contact.friction_law does not name
+    double friction_history =
+        0;  ///< weight of saturated friction beside a spring, or of mindlin beside saturated
     double rolling_resistance = 0;  ///< mu_r: the rolling spring yields at mu_r R* F_n
     double modulus_scatter = 0;     ///< standard deviation of ln E between grains
     double diameter_error = 0;      ///< true minus stated diameter, the same for all grains [m]

@@ -55,7 +55,8 @@ void set_contact_law(DeviceReplica& d, const Replica& replica) {
     d.material = device_materials<decltype(d.material)>({replica}, materials_kept({replica}))[0];
     d.drag = replica.grains.drag;
     d.sliding_velocity = replica.contact.sliding_velocity;
-    d.mindlin = mindlin_share(replica) > 0;
+    const bool keeps_displacement = replica.contact.friction_law == FrictionLaw::mindlin_displacement;
+    if (mindlin_share(replica) > 0) d.mindlin = keeps_displacement ? MINDLIN_DISPLACEMENT : MINDLIN_FORCE;
     for (const GrainMaterial& material : materials(replica)) {
         const auto surface = surface_law(replica.contact.model, material.poisson_ratio, replica.contact.gamma,
                                          replica.effects.finite_strain);
@@ -150,7 +151,7 @@ double list_reach(const Replica& replica, const Packing& packing) {
 
 double mindlin_share(const Replica& replica) {
     const double other = replica.effects.friction_history;
-    return replica.contact.friction_law == FrictionLaw::mindlin ? 1 - other : other;
+    return replica.contact.friction_law == FrictionLaw::saturated ? other : 1 - other;
 }
 
 double time_step(const Replica& replica, const Packing& packing) {

@@ -36,6 +36,7 @@ std::vector<DeviceReplica> device_replicas(const std::vector<Replica>& replicas,
         all.push_back(device_replica<DeviceReplica>(replicas[r], packings[r],
                                                     {layout.first_grain[r], layout.grain_count[r], cells}));
         all.back().memory_rows = rows.count;
+        all.back().radius_row = rows.radius;
         all.back().deepest_row = rows.deepest;
         all.back().relaxed_row = rows.relaxed;
         all.back().rolling_row = rows.rolling;

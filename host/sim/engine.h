@@ -105,6 +105,7 @@ public:
                         const std::function<void(std::size_t, ReplicaState)>& use) const;
     /// Positions and contacts after the last interval of `replica`.
     ReplicaState state(int replica) const;
+    Precision precision() const { return build_.precision; }
     /// For tests: sets velocities by the user's grain numbers.
     void set_velocities(int replica, const std::vector<Vec3>& velocity,
                         const std::vector<Vec3>& angular_velocity);

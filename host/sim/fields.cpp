@@ -9,6 +9,7 @@ namespace mcdem::inline sim {
 MemoryRows memory_rows(const FieldNeeds& needs) {
     MemoryRows rows;
     if (needs.springs) rows.count += 3;
+    if (needs.springs || needs.rolling) rows.radius = rows.count++;
     if (needs.deepest) rows.deepest = rows.count++;
     if (needs.relaxed) rows.relaxed = rows.count++;
     if (needs.rolling) {

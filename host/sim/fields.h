@@ -61,9 +61,9 @@ struct FieldNeeds {
 };
 
 /// Number of rows of a grain's contact memory (kernels/contact_memory.h). Springs, if present, use the first
-/// three.
+/// three; with springs or rolling resistance there is one of contact radii.
 struct MemoryRows {
-    int count = 0, deepest = 0, relaxed = 0, rolling = 0;
+    int count = 0, radius = 0, deepest = 0, relaxed = 0, rolling = 0;
 };
 MemoryRows memory_rows(const FieldNeeds& needs);
 

@@ -155,7 +155,9 @@ private:
                 "[walls]\nyoungs_modulus = {}\npoisson_ratio = {}\nfriction = {}\nrestitution = {}\n",
                 of_any_size(1e5, 1e8), between(0, 0.5), between(0, 0.6), between(0.2, 1));
         text_ += fmt::format("[contact]\ngamma = {}\nfriction_law = \"{}\"\n", between(0.5, 1.3),
-                             chance(0.5) ? "mindlin" : "saturated");
+                             chance(0.5)   ? "mindlin"
+                             : chance(0.5) ? "mindlin_displacement"
+                                           : "saturated");
     }
 
     void draw_species() {

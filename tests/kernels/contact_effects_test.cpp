@@ -63,7 +63,8 @@ Start with_effects(const Effects& effects, ContactModel model, FrictionLaw law, 
 
 TEST(EffectSteps, EachAloneFollowsTheReferenceInOneBatch) {
     for (Precision precision : precisions())
-        for (FrictionLaw law : {FrictionLaw::saturated, FrictionLaw::mindlin}) {
+        for (FrictionLaw law :
+             {FrictionLaw::saturated, FrictionLaw::mindlin, FrictionLaw::mindlin_displacement}) {
             std::vector<Start> starts;
             for (const Effects& effects : one_by_one())
                 starts.push_back(with_effects(effects, ContactModel::mc_dem, law, 64, 31));

@@ -56,8 +56,9 @@ public:
         if (entry < NO_PARTNER) return mcdem::wall_partner(static_cast<mcdem::Wall>(WALL_PARTNER(0) - entry));
         return layout_.order[replica][entry - layout_.first_grain[replica]];
     }
-    /// Map from partner to a stored value, for one grain; of the contact memory its first row.
-    std::map<int, double> by_partner(const std::string& name, int replica, int grain) const {
+    /// Map from partner to a stored value, for one grain; of the contact memory one row.
+    std::map<int, double> by_partner(const std::string& name, int replica, int grain,
+                                     std::size_t stored_row = 0) const {
         const auto values = saved_reals(saved_, name, build_.precision);
         std::map<int, double> found;
         const auto entries = row(replica, grain);
@@ -66,7 +67,9 @@ public:
         const std::size_t block = slot_place(build_, index(replica, grain) - lane, 0);
         for (int c = 0; c < build_.slots; ++c)
             if (entries[c] != NO_PARTNER)
-                found[user_partner(replica, entries[c])] = values[rows * block + slot_place(build_, lane, c)];
+                found[user_partner(replica, entries[c])] =
+                    values[rows * block + stored_row * build_.slots * build_.lanes +
+                           slot_place(build_, lane, c)];
         return found;
     }
     std::vector<int> partner_slots() const { return saved_values<int>(saved_, "partner_slot"); }

@@ -29,7 +29,7 @@ kernel void write_offsets(global int* offsets) {
     MEMBER(plate_velocity) MEMBER(first_grain) MEMBER(grain_count) \
     MEMBER(first_cell) MEMBER(cells_x) MEMBER(cells_y) MEMBER(cells_z) MEMBER(span_x) \
     MEMBER(span_y) MEMBER(span_z) MEMBER(surface) MEMBER(finite_contacts) MEMBER(mindlin) \
-    MEMBER(memory_rows) MEMBER(deepest_row) MEMBER(relaxed_row) MEMBER(rolling_row) MEMBER(steps_before) MEMBERS_OF_EFFECTS(MEMBER)
+    MEMBER(memory_rows) MEMBER(radius_row) MEMBER(deepest_row) MEMBER(relaxed_row) MEMBER(rolling_row) MEMBER(steps_before) MEMBERS_OF_EFFECTS(MEMBER)
 #define MEMBERS_OF_MATERIAL(MEMBER) \
     MEMBER(density) MEMBER(relative_density) MEMBER(weight_density) MEMBER(modulus) MEMBER(shear) \
     MEMBER(damping) MEMBER(friction) MEMBER(half_space_scale) MEMBER(half_space_normal) \

@@ -30,16 +30,6 @@ Vec3 nearest_image(const mcdem::Box& box, const Vec3& point, const Vec3& to) {
     return nearest;
 }
 
-/// Force of a damped spring that follows `rate` across the unit vector e and yields at `limit`.
-Vec3 cut_spring(double limit, double stiffness, double damping, const Vec3& rate, const Vec3& e,
-                double elapsed, Vec3& spring) {
-    spring = across(spring + rate * elapsed, e);
-    const Vec3 force = stiffness * spring + damping * rate;
-    if (force.norm() <= limit) return force;
-    spring *= limit / force.norm();
-    return force * (limit / force.norm());
-}
-
 bool is_there(const mcdem::Box& box, int partner) {
     if (!mcdem::is_wall(partner)) return true;
     const auto wall = mcdem::wall_of(partner);
@@ -177,6 +167,7 @@ ReferenceContact StepReference::contact_of(int i, int partner, double elapsed, M
     if (!(overlap > 0)) {
         memory.spring.setZero();
         memory.rolling.setZero();
+        memory.contact_radius = 0;
         memory.relaxed *= std::exp(-elapsed / scene_.effects.relaxation_time);
         contact.arm = a.radius + contact.displacement;
         const Attraction pull = attraction(overlap, pair);
@@ -228,11 +219,10 @@ void StepReference::add_forces(ReferenceContact& contact, const Body& a, const B
     const bool named_saturated = scene_.contact.friction_law == mcdem::FrictionLaw::saturated;
     const double h = effects.friction_history, mindlin = named_saturated ? h : 1 - h;
     const Vec3 sliding = across(relative, e);
-    if (mindlin > 0)
-        contact.tangential =
-            mindlin * mindlin_friction(limit, sliding, contact, pair, elapsed, memory.spring);
+    carry_springs(contact, a, b, elapsed, memory);
+    if (mindlin > 0) contact.tangential = mindlin * mindlin_friction(limit, sliding, pair, elapsed, memory);
     if (mindlin < 1) contact.tangential += (1 - mindlin) * saturated_friction(limit, sliding, pair);
-    contact.couple = rolling_couple(normal, a, b, contact, pair, elapsed, memory.rolling);
+    contact.couple = rolling_couple(normal, a, b, pair, elapsed, memory);
     contact.force = (pull.force - normal) * e + contact.tangential;
 }
 
@@ -247,33 +237,6 @@ StepReference::Attraction StepReference::attraction(double overlap, const PairCo
                 -pull_off_force * std::pow(range + overlap, 2) / (2 * range)};
     const double cohesion = 2 * pi * scene_.effects.cohesion * pair.radius * overlap;
     return {pull_off_force + cohesion, -pull_off_force * (range / 2 + overlap) - cohesion * overlap / 2};
-}
-
-/// Rolling resistance: a damped spring between the rotations across the normal, cut at mu_r R* F_n.
-Vec3 StepReference::rolling_couple(double normal, const Body& a, const Body& b,
-                                   const ReferenceContact& contact, const PairConstants& pair, double elapsed,
-                                   Vec3& rotation) const {
-    const auto inertia = [](const Body& body) { return 0.4 * body.mass * body.radius * body.radius; };
-    const double reduced = b.radius == 0 ? inertia(a) : 1 / (1 / inertia(a) + 1 / inertia(b));
-    const Vec3 rolling = across(b.angular_velocity - a.angular_velocity, contact.direction);
-    const double limit = scene_.effects.rolling_resistance * pair.radius * std::max(normal, 0.0);
-    const double stiffness = 8 * pair.shear_modulus * contact.contact_radius * std::pow(pair.radius, 2);
-    return cut_spring(limit, stiffness, pair.damping * std::sqrt(stiffness * reduced), rolling,
-                      contact.direction, elapsed, rotation);
-}
-
-/// Viscous below `sliding_velocity`. A step removes at most a tenth of m* times the sliding
-/// velocity.
-Vec3 StepReference::saturated_friction(double limit, const Vec3& sliding, const PairConstants& pair) const {
-    const double smooth_speed = std::hypot(sliding.norm(), scene_.contact.sliding_velocity);
-    return std::min(limit / smooth_speed, 0.1 * pair.mass / time_step_) * sliding;
-}
-
-Vec3 StepReference::mindlin_friction(double limit, const Vec3& sliding, const ReferenceContact& contact,
-                                     const PairConstants& pair, double elapsed, Vec3& spring) const {
-    const double stiffness = 8 * pair.shear_modulus * contact.contact_radius;
-    return cut_spring(limit, stiffness, pair.damping * std::sqrt(stiffness * pair.mass), sliding,
-                      contact.direction, elapsed, spring);
 }
 
 std::vector<ReferenceContact> StepReference::neighbours() const {

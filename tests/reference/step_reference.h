@@ -17,10 +17,11 @@ using mcdem::Vec3;
 struct Memory {
     double predicted = 0;          ///< surface displacement extrapolated to the next step [m]
     std::array<double, 4> past{};  ///< .. by the forces of each of the last four steps, latest first
-    Vec3 spring = Vec3::Zero();    ///< tangential spring of Mindlin friction [m]
+    Vec3 spring = Vec3::Zero();    ///< force of the tangential spring of Mindlin friction [N]
+    double contact_radius = 0;     ///< that the stiffness of the springs follows [m]
     double deepest = 0;            ///< largest overlap so far (plasticity) [m]
     double relaxed = 0;            ///< internal variable q (viscoelasticity) [N]
-    Vec3 rolling = Vec3::Zero();   ///< relative rotation stored in the rolling spring [rad]
+    Vec3 rolling = Vec3::Zero();   ///< couple of the rolling spring [N m]
 };
 
 /// A neighbour of a grain and its contact.
@@ -54,6 +55,8 @@ public:
 
     double time_step() const { return time_step_; }
     void set_time_step(double time_step) { time_step_ = time_step; }
+    /// In float the contact radius of springs decreases only when the contact's is this fraction below it.
+    void set_radius_slack(double slack) { radius_slack_ = slack; }
     double reach() const { return reach_; }  ///< largest gap of a neighbour in the list [m]
     double mass(int grain) const;
 
@@ -100,11 +103,15 @@ private:
         double force = 0, energy = 0;  ///< [N], [J]
     };
     Attraction attraction(double overlap, const PairConstants& pair) const;
-    Vec3 rolling_couple(double normal, const Body& a, const Body& b, const ReferenceContact& contact,
-                        const PairConstants& pair, double elapsed, Vec3& rotation) const;
+    Vec3 direction_before(const ReferenceContact& contact, const Body& a, const Body& b,
+                          double elapsed) const;
+    void carry_springs(const ReferenceContact& contact, const Body& a, const Body& b, double elapsed,
+                       Memory& memory) const;
+    Vec3 rolling_couple(double normal, const Body& a, const Body& b, const PairConstants& pair,
+                        double elapsed, Memory& memory) const;
     Vec3 saturated_friction(double limit, const Vec3& sliding, const PairConstants& pair) const;
-    Vec3 mindlin_friction(double limit, const Vec3& sliding, const ReferenceContact& contact,
-                          const PairConstants& pair, double elapsed, Vec3& spring) const;
+    Vec3 mindlin_friction(double limit, const Vec3& sliding, const PairConstants& pair, double elapsed,
+                          Memory& memory) const;
     void displace_surfaces(const std::vector<std::vector<ReferenceContact>>& contact);
     double displacement_energy() const;  ///< [J]
 
@@ -114,7 +121,7 @@ private:
     std::vector<double> radius_, youngs_modulus_;
     std::vector<int> species_;
     double time_step_ = 0, reach_ = 0, probe_gap_ = 0;
-    double plate_z_ = 0, plate_velocity_ = 0, drag_ = 0, spin_drag_ = 0;
+    double plate_z_ = 0, plate_velocity_ = 0, drag_ = 0, spin_drag_ = 0, radius_slack_ = 0;
 };
 
 }  // namespace reference

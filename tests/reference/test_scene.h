@@ -285,6 +285,7 @@ private:
 /// The reference of one replica, with the engine's (rounded) state.
 inline StepReference reference_of(const Engine& engine, int r, const Start& start) {
     StepReference reference(start.replica, start.packing);
+    if (engine.precision() == Precision::single_precision) reference.set_radius_slack(0x1p-11);
     const auto state = engine.state(r);
     reference.position = state.position;
     reference.velocity = state.velocity;

@@ -14,7 +14,7 @@ using namespace mcdem;
 Replica authors_replica(ContactModel model, int scans_per_stroke) {
     Replica replica;  // the defaults are those of the experiment
     replica.contact.model = model;
-    replica.contact.friction_law = FrictionLaw::mindlin;
+    replica.contact.friction_law = FrictionLaw::mindlin_displacement;
     replica.plate.speed = (replica.plate.start - replica.plate.end) / 0.3;
     replica.protocol.scans_per_stroke = scans_per_stroke;
     replica.protocol.rate_tolerance = 0;

@@ -19,7 +19,8 @@ inline const std::filesystem::path authors_folder = std::filesystem::path(MCDEM_
     if (!std::filesystem::exists(authors_folder / "input.data")) \
     GTEST_SKIP() << "no authors' packing: " << authors_folder << " is missing"
 
-/// Settings of the other code: one continuous stroke of 0.3 s, Mindlin friction, no relaxation before.
+/// Settings of the other code: one continuous stroke of 0.3 s, the Mindlin friction that it has, no
+/// relaxation before.
 mcdem::Replica authors_replica(mcdem::ContactModel model, int scans_per_stroke);
 
 /// Top force [N] in each scan of a loading stroke.

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "reference/test_scene.h"
+#include "reference/moved_pair.h"
 
 namespace reference {
 namespace {
@@ -19,15 +19,19 @@ TEST(FrictionHistory, WeightOneGivesTheOtherLaw) {
     for (Precision precision : {Precision::single_precision, finest()}) {
         Batch batch(build(precision),
                     std::vector<Start>{lattice(FrictionLaw::saturated, 0), lattice(FrictionLaw::mindlin, 1),
-                                       lattice(FrictionLaw::mindlin, 0), lattice(FrictionLaw::saturated, 1)});
-        for (int r = 0; r < 4; ++r) {
+                                       lattice(FrictionLaw::mindlin, 0), lattice(FrictionLaw::saturated, 1),
+                                       lattice(FrictionLaw::mindlin_displacement, 1),
+                                       lattice(FrictionLaw::mindlin_displacement, 0)});
+        for (int r = 0; r < 6; ++r) {
             Uniform uniform(3);
             batch.engine().set_velocities(r, uniform.vectors(27, 0.1), uniform.vectors(27, 10));
         }
         batch.advance(100);
         EXPECT_TRUE(same_bits(batch.engine().state(0), batch.engine().state(1)));
         EXPECT_TRUE(same_bits(batch.engine().state(2), batch.engine().state(3)));
+        EXPECT_TRUE(same_bits(batch.engine().state(0), batch.engine().state(4)));
         EXPECT_FALSE(same_bits(batch.engine().state(0), batch.engine().state(2)));
+        EXPECT_FALSE(same_bits(batch.engine().state(2), batch.engine().state(5)));
     }
 }
 
@@ -141,6 +145,43 @@ TEST(RollingResistance, IsASpringThatYields) {
         const auto now = batch.engine().state(0).angular_velocity;
         EXPECT_NEAR((now[0].y() + relative / 2) * inertia / step, stiffness * angle, 0.01 * limit) << i;
         EXPECT_NEAR(now[0].y() + now[1].y(), 0, 1e-6 * spin) << "angular momentum";
+    }
+}
+
+/// Couple on the first grain of a pair [N m], from the change of its spin in a step in which it is at rest.
+Vec3 couple(MovedPair& pair) {
+    constexpr double inertia = 0.4 * 1000 * 4.0 / 3 * std::numbers::pi * 1e-10;  // R = 0.01 m
+    pair.move(Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 1);
+    return pair.engine().state(0).angular_velocity[0] * inertia / pair.engine().time_step(0);
+}
+
+MovedPair rolled_pair() {
+    mcdem::Effects effects;
+    effects.rolling_resistance = 10;
+    MovedPair pair(build(finest()), MovedPair::start(1e-4, 0, FrictionLaw::saturated, effects));
+    pair.move(Vec3::Zero(), Vec3::Zero(), {0, -1e-4, 0}, {0, 1e-4, 0}, 100);
+    return pair;
+}
+
+// The couple stays while the load grows and decreases with the contact radius, the root of the overlap.
+TEST(RollingResistance, KeepsItsCoupleWhenTheLoadGrows) {
+    MovedPair pair = rolled_pair();
+    const Vec3 rolled = couple(pair);
+    ASSERT_GT(rolled.y(), 0);
+    pair.move_second({-3e-4, 0, 0}, 500);
+    EXPECT_NEAR(couple(pair).y() / rolled.y(), 1, 1e-3);
+    pair.move_second({3e-4, 0, 0}, 500);
+    EXPECT_NEAR(couple(pair).y() / rolled.y(), 0.5, 1e-3);
+}
+
+TEST(RollingResistance, TurnsWithThePair) {
+    const std::vector<Vec3> axes{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), Vec3(1, 1, 1).normalized()};
+    for (const Vec3& axis : axes) {
+        MovedPair pair = rolled_pair();
+        const Vec3 rolled = couple(pair);
+        pair.turn_together(axis, std::numbers::pi / 2, 500);
+        const Vec3 wanted = Eigen::AngleAxisd(std::numbers::pi / 2, axis) * rolled;
+        EXPECT_LT((couple(pair) - wanted).norm() / rolled.norm(), 1e-3) << axis.transpose();
     }
 }
 

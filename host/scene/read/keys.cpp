@@ -53,7 +53,7 @@ const Key table[] = {
 
     {"contact.model", replica<&Replica::contact, &ContactLaw::model>, "", none, each, "how a force at one contact displaces the surface at the grain's other contacts"},
     {"contact.gamma", replica<&Replica::contact, &ContactLaw::gamma>, "", between(0, 10), each, "prefactor of the surface displacements of mc_dem; other models do not use it"},
-    {"contact.friction_law", replica<&Replica::contact, &ContactLaw::friction_law>, "", none, each, "saturated: mu times the normal force, against sliding; mindlin: a tangential spring with history, limited to that force"},
+    {"contact.friction_law", replica<&Replica::contact, &ContactLaw::friction_law>, "", none, each, "saturated: mu times the normal force, against sliding; mindlin: a tangential spring with history, limited to that force, which keeps its force when the normal force grows and loses some in proportion to the contact radius when that decreases; mindlin_displacement: the spring keeps its displacement instead, as in LIGGGHTS; it can return more work than was put in"},
     {"contact.sliding_velocity", replica<&Replica::contact, &ContactLaw::sliding_velocity>, "m/s", above_zero_to(100), each, "sliding velocity below which saturated friction decreases to zero"},
 
     {"packing.file", &follow<&Settings::packing_file>, "", none, each, "LIGGGHTS/LAMMPS data file or text dump, Yade text file (x y z r), run.h5, or .csv with columns x_m,y_m,z_m,diameter_m, such as an experiment's grains.csv. A column species or type gives the [[species]] of each grain, by name or by number from 1. Path relative to the scene file (in --set: to the current folder). Default: the packing is generated"},
@@ -103,7 +103,7 @@ const Key table[] = {
     {"effects.finite_strain", effect<&Effects::finite_strain>, "", between(0, 1), each, "elastic_sphere: fraction of its difference to hyperelastic_sphere that is added; 1: hyperelastic_sphere; other models ignore it"},
     {"effects.plasticity", effect<&Effects::plasticity>, "", between(0, 0.99), each, "fraction of the deepest overlap that remains after unloading"},
     {"effects.bulge_contacts", effect<&Effects::bulge_contacts>, "", between(0, 1), each, "fraction of the surface displacement that counts where the undeformed grains do not overlap; 1: all of it; 0: surface displacements create no contacts"},
-    {"effects.friction_history", effect<&Effects::friction_history>, "", between(0, 1), each, "weight of the friction law that contact.friction_law does not name"},
+    {"effects.friction_history", effect<&Effects::friction_history>, "", between(0, 1), each, "weight of another friction law: of saturated friction if contact.friction_law is a spring, of mindlin if it is saturated"},
     {"effects.rolling_resistance", effect<&Effects::rolling_resistance>, "", between(0, 10), each, "mu_r: a rolling spring that yields at the torque mu_r R* F_n"},
     {"effects.modulus_scatter", effect<&Effects::modulus_scatter>, "", between(0, 2), each, "standard deviation of ln E between grains; the mean of E does not change"},
     {"effects.diameter_error", effect<&Effects::diameter_error>, "m", between(-10, 10), each, "true minus stated diameter, the same for all grains; results contain the stated diameter"},
