@@ -64,9 +64,9 @@ INLINE Turn turn_of(Grain at, Neighbours neighbour, real elapsed) {
         turns |= curved & AS_MASK(fabs(distance) > R(0));
     }
     const lanes3 spins = add3(neighbour.spin, at.now.spin);
-    const lanes half = WHERE(turns, R(0.5) * elapsed / WHERE(turns, distance, R(1)), R(0));
-    const lanes square = half * half * dot3(across, across); /* s^2/4 */
-    const lanes bisecting = half * (R(1) - square * (R(1) - R(2) * square));
+    const lanes rate = WHERE(turns, R(0.5) * elapsed / WHERE(turns, distance, R(1)), R(0));
+    const lanes square = rate * rate * dot3(across, across); /* s^2/4 */
+    const lanes bisecting = rate * (R(1) - square * (R(1) - R(2) * square));
     return (Turn){add_scaled3(neighbour.normal, -bisecting, across),
                   R(0.5) * elapsed * dot3(spins, neighbour.normal)};
 }
