@@ -162,6 +162,22 @@ def long_functions(root):
                 yield f"{file.relative_to(root)}:{line}: function of {length} lines, at most {LONGEST_FUNCTION}"
 
 
+# These take any error for "not there": core/look.h and mcdem/look.py distinguish the two.
+LOOKS = {"host": r"(?:fs|filesystem)::(?:exists|is_\w+|status|symlink_status|file_size|(?:recursive_)?directory_iterator)\(|ifstream",
+         "python": r"os\.path\.(?:l?exists|is\w+)\(|\.(?:exists|is_file|is_dir|is_symlink)\(\)"}
+OWN_LOOKS = {"host/core/look.cpp", "host/core/atomic_file.cpp", "host/cl/kernel_cache.cpp"}  # the last two tidy up
+
+
+def careless_looks(root):
+    for file in sorted((root / "host").rglob("*.*")):
+        name = str(file.relative_to(root))
+        if file.suffix not in SOURCES or name in OWN_LOOKS:
+            continue
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            if re.search(LOOKS["python" if file.suffix == ".py" else "host"], line):
+                yield f"{name}:{number}: must look at paths by core/look.h or mcdem/look.py, got {line.strip()}"
+
+
 def argument_counts(text):
     """Kind, name and number of arguments of each kernel and device function."""
     for kind, name, arguments in re.findall(r"^(kernel|INLINE)\b[\w\s*]*?\b(\w+)\(([^)]*)\) \{", text, re.M):
@@ -193,7 +209,7 @@ def main():
     self_test()
     root = pathlib.Path(sys.argv[1])
     rules = (strange_folders, wrong_includes, types_twice, test_names_twice, hidden_types_twice, untested_kernels, long_files,
-             long_functions, many_arguments)
+             long_functions, many_arguments, careless_looks)
     problems = [problem for rule in rules for problem in rule(root)]
     print("\n".join(problems) or f"{sum(1 for _ in sources(root))} files in order")
     return 1 if problems else 0

@@ -12,6 +12,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/look.h"
 #include "core/make_folder.h"
 #include "io/result_folder.h"
 #include "scene/programme/legs.h"
@@ -50,14 +51,14 @@ bool alike(Challenge a, Challenge b) {
 }
 
 /// experiment.toml is written last.
-bool is_complete(const fs::path& folder) { return fs::exists(folder / "experiment.toml"); }
+bool is_complete(const fs::path& folder) { return is_there(folder / "experiment.toml"); }
 
 class Making {
 public:
     Making(Device& device, const Scene& scene, const ChallengeOptions& options)
         : options_(options), simulator_(device, scene, options.measurement) {
         std::optional<Challenge> sealed;
-        if (fs::exists(options.truth)) sealed = parse_truth(read_file(options.truth), options.truth.string());
+        if (is_there(options.truth)) sealed = parse_truth(read_file(options.truth), options.truth.string());
         challenge_ =
             draw_challenge(options.size, effects_to_try(options, simulator_.stated()), simulator_.stated(),
                            simulator_.nuisances(), seal_of(scene.text), seed_of(sealed));
@@ -146,18 +147,18 @@ private:
         const std::string seal = seal_of(truth);
         const fs::path open_file = options_.folder / "challenge.json";
         const std::string open = open_text(seal);
-        if (fs::exists(open_file) && open_challenge_text(read_open_challenge(options_.folder)) != open)
+        if (is_there(open_file) && open_challenge_text(read_open_challenge(options_.folder)) != open)
             throw of_another_challenge(open_file);
-        if (!fs::exists(open_file)) expect_no_cases();
+        if (!is_there(open_file)) expect_no_cases();
         if (!is_sealed_ && !create_file(options_.truth, truth)) throw of_another_challenge(options_.truth);
-        if (!fs::exists(open_file)) replace_file(open_file, open);
+        if (!is_there(open_file)) replace_file(open_file, open);
         return seal;
     }
 
     /// Folders that exist before the challenge belong to something else.
     void expect_no_cases() const {
         for (const ChallengeCase& c : challenge_.cases)
-            if (fs::exists(options_.folder / c.folder))
+            if (is_there(options_.folder / c.folder))
                 throw InputError(fmt::format(
                     "{}: is there without a challenge.json beside it, and is not replaced: give another "
                     "folder (--out)",

@@ -11,6 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/look.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/sha256.h"
@@ -53,7 +54,7 @@ public:
             throw InputError(fmt::format("{}: is not the scene that {} was made with", scene.name,
                                          (options.challenge / "challenge.json").string()));
         for (const OpenCase& c : challenge_.cases)
-            if (!fs::exists(options.challenge / c.folder / "experiment.toml"))
+            if (!is_there(options.challenge / c.folder / "experiment.toml"))
                 throw InputError(fmt::format("{}: {} is not made yet: continue with `mcdem challenge make`",
                                              options.challenge.string(), c.folder));
         lock_.emplace(lock_folder(options.out, use));
@@ -69,7 +70,7 @@ public:
     std::vector<std::size_t> missing() override {
         std::vector<std::size_t> parts;
         if (missing_cases().empty()) return parts;
-        if (!fs::exists(options_.library.file)) {
+        if (!is_there(options_.library.file)) {
             const auto kept = read_manifest(device_file(options_.out));
             for (std::size_t k = 0; k < library_parts().size(); ++k)
                 if (!kept ||
@@ -87,7 +88,7 @@ public:
             make_library(device);
             return diagnose(device, c);
         }
-        if (fs::exists(options_.library.file)) return;
+        if (is_there(options_.library.file)) return;
         part -= challenge_.cases.size();
         if (part >= library_parts().size())
             throw InputError(
@@ -102,7 +103,7 @@ public:
         const auto left = missing_cases();
         if (left.empty()) return;
         expect_device(device);
-        const double library = fs::exists(options_.library.file) ? 0 : work_of_library();
+        const double library = is_there(options_.library.file) ? 0 : work_of_library();
         const double whole = library + work_a_case() * static_cast<double>(left.size());
         on_progress = [&](double fraction) { options_.on_progress(library * fraction / whole); };
         make_library(device);
@@ -122,7 +123,7 @@ private:
     fs::path file_of(const OpenCase& c, const std::string& folder) const {
         return case_file(options_.out / folder, c);
     }
-    bool is_done(const OpenCase& c) const { return fs::exists(file_of(c, "")); }
+    bool is_done(const OpenCase& c) const { return is_there(file_of(c, "")); }
     std::vector<std::size_t> missing_cases() const {
         std::vector<std::size_t> cases;
         for (std::size_t c = 0; c < challenge_.cases.size(); ++c)
@@ -238,7 +239,7 @@ private:
         if (library_) return;
         const fs::path& file = options_.library.file;
         const Experiment& experiment = first_experiment();
-        if (!fs::exists(file))  // another process may have written the same library in the meantime
+        if (!is_there(file))  // another process may have written the same library in the meantime
             create_file(file, library_text(
                                   build_library(device, common(), library_plan(), store(), trial_options())));
         Library library = read_library(file);

@@ -11,6 +11,7 @@
 #include "cl/held_signals.h"
 #include "cl/kernel_cache.h"
 #include "cl/profile.h"
+#include "core/stack.h"
 
 namespace mcdem::inline opencl {
 namespace {
@@ -72,6 +73,7 @@ std::vector<Found> find_devices() {
         one_at_a_time;  // PoCL initialises its devices at the first call and is not thread-safe there
     const std::lock_guard lock(one_at_a_time);
     expect_enough_open_files();
+    expect_enough_stack();
     prepare_kernel_cache();
     const HeldSignals held;  // the driver's threads take no signals
     std::vector<Found> found;
@@ -119,10 +121,9 @@ Found choose(const std::string& choice) {
 }  // namespace
 
 RunError no_device() {
-    return RunError(fmt::format(
+    return RunError(
         "no OpenCL device found: install a driver (the package pocl-opencl-icd runs on any CPU); if it "
-        "is there, see that it can write in {}, or set POCL_CACHE_DIR to a folder where it can",
-        kernel_cache_folder().string()));
+        "is there, set POCL_CACHE_DIR to a folder of your own where it can keep compiled kernels");
 }
 
 std::vector<DeviceInfo> list_devices() {

@@ -4,26 +4,27 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <sstream>
 
 #include "cl/held_signals.h"
 #include "cl/kernel_sources.h"
 #include "core/errors.h"
+#include "core/input_file.h"
+#include "core/look.h"
 
 namespace mcdem::inline opencl {
 namespace {
 
 std::string kernel_source(const std::string& name) {
     if (const char* folder = std::getenv("MCDEM_KERNELS"); folder && *folder) {
-        std::ifstream file(std::filesystem::path(folder) / name);
-        if (!file)
+        const auto file = std::filesystem::path(folder) / name;
+        if (!is_file(file))
             throw InputError(fmt::format(
                 "MCDEM_KERNELS: must name the folder of the kernels, got '{}', where {} cannot be "
                 "read: give `kernels` of the sources, or unset it for those built in",
                 folder, name));
-        return {std::istreambuf_iterator<char>(file), {}};
+        return read_file(file);
     }
     return embedded_kernel_sources().at(name);
 }

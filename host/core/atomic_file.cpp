@@ -11,8 +11,10 @@
 #include <random>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "core/errors.h"
+#include "core/look.h"
 
 namespace mcdem::inline core {
 namespace {
@@ -41,6 +43,16 @@ bool is_temporary(const fs::path& file) {
         std::string_view(name).substr(name.size() - ending.size() - digits, digits);
     return name[name.size() - ending.size() - digits - 1] == '.' &&
            random.find_first_not_of("0123456789abcdef") == random.npos;
+}
+
+/// Those in the folder that can be listed: what stays is removed by a later call.
+std::vector<fs::path> temporaries(const fs::path& folder) {
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (auto entry = fs::directory_iterator(folder, error); !error && entry != fs::directory_iterator();
+         entry.increment(error))
+        if (is_temporary(entry->path())) found.push_back(entry->path());
+    return found;
 }
 
 /// The final name for a temporary name.
@@ -166,7 +178,7 @@ bool create_file(const fs::path& file, std::string_view text) {
     if (error == EEXIST && fs::hard_link_count(out.temporary()) == 2) error = 0;
     if (error == EPERM || error == ENOSYS || error == EOPNOTSUPP) {
         // File systems without links: two programs at the same moment may both create the file.
-        error = fs::exists(file) ? EEXIST : 0;
+        error = is_there(file) ? EEXIST : 0;
         if (error == 0) out.put_in_place();
     }
     if (error != 0 && error != EEXIST) fail(file, error);
@@ -182,17 +194,13 @@ void move_file(const fs::path& from, const fs::path& to) {
 }
 
 void remove_temporaries_of(const fs::path& file) {
-    std::error_code unknown;
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    for (const auto& entry : fs::directory_iterator(folder, unknown))
-        if (is_temporary(entry.path()) && temporary_place(entry.path()) == file.filename())
-            remove_if_abandoned(entry.path());
+    for (const fs::path& temporary : temporaries(folder))
+        if (temporary_place(temporary) == file.filename()) remove_if_abandoned(temporary);
 }
 
 void remove_temporaries(const fs::path& folder) {
-    std::error_code unknown;
-    for (const auto& entry : fs::directory_iterator(folder, unknown))
-        if (is_temporary(entry.path())) remove_if_abandoned(entry.path());
+    for (const fs::path& temporary : temporaries(folder)) remove_if_abandoned(temporary);
 }
 
 }  // namespace mcdem::core

@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <span>
 #include <system_error>
 
 #include "core/errors.h"
+#include "core/look.h"
 
 namespace mcdem::inline core {
 namespace {
@@ -29,6 +31,15 @@ void expect_regular(const std::filesystem::path& file, int descriptor) {
     ::close(descriptor);
     throw InputError(file.string() + (S_ISDIR(status.st_mode) ? ": is a folder; give a file"
                                                               : ": is a pipe or device; give a file"));
+}
+
+/// Reads as much as there is, at most as much as fits; 0 at the end.
+std::size_t read_some(const std::filesystem::path& file, int descriptor, std::span<char> block) {
+    ssize_t some = 0;
+    do some = ::read(descriptor, block.data(), block.size());
+    while (some < 0 && errno == EINTR);
+    if (some < 0) fail_reading(file.string() + ": cannot be read", errno);
+    return static_cast<std::size_t>(some);
 }
 
 }  // namespace
@@ -55,13 +66,17 @@ int open_input(const std::filesystem::path& file) {
 void read_blocks(const std::filesystem::path& file, const std::function<void(std::string_view block)>& take) {
     const Descriptor in{open_input(file)};
     char block[65536];
-    while (true) {
-        const ssize_t some = ::read(in.number, block, sizeof block);
-        if (some < 0 && errno == EINTR) continue;
-        if (some < 0) fail_reading(file.string() + ": cannot be read", errno);
-        if (some == 0) return;
-        take({block, static_cast<std::size_t>(some)});
-    }
+    while (const std::size_t some = read_some(file, in.number, block)) take({block, some});
+}
+
+std::string read_beginning(const std::filesystem::path& file, std::size_t size) {
+    const Descriptor in{open_input(file)};
+    std::string bytes(size, '\0');
+    std::size_t count = 0;
+    while (const std::size_t some = read_some(file, in.number, std::span(bytes).subspan(count)))
+        count += some;
+    bytes.resize(count);
+    return bytes;
 }
 
 std::string read_file(const std::filesystem::path& file) {
@@ -71,9 +86,7 @@ std::string read_file(const std::filesystem::path& file) {
 }
 
 std::string read_file(const std::filesystem::path& file, std::string_view if_missing) {
-    std::error_code unknown;
-    if (!std::filesystem::exists(file, unknown) && !unknown)
-        throw InputError(file.string() + ": " + std::string(if_missing));
+    if (!is_there(file)) throw InputError(file.string() + ": " + std::string(if_missing));
     return read_file(file);
 }
 

@@ -18,7 +18,10 @@ void read_blocks(const std::filesystem::path& file, const std::function<void(std
 /// All bytes of the file; throws like open_input.
 std::string read_file(const std::filesystem::path& file);
 
-/// The same; if the file does not exist, the message of the InputError is `if_missing`.
+/// The first bytes of the file, at most `size`; throws like open_input.
+std::string read_beginning(const std::filesystem::path& file, std::size_t size);
+
+/// All bytes; if the file does not exist, the message of the InputError is `if_missing`.
 std::string read_file(const std::filesystem::path& file, std::string_view if_missing);
 
 /// Throws RunError: the system refused `what` with this errno. This says nothing about the file's content.

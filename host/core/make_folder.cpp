@@ -6,14 +6,14 @@
 #include <system_error>
 
 #include "core/errors.h"
+#include "core/look.h"
 
 namespace mcdem::inline core {
 
 void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    std::error_code none;
-    if (error && std::filesystem::is_symlink(folder, none) && !std::filesystem::exists(folder, none))
+    if (error && look_at_itself(folder) == At::link && !is_there(folder))
         throw RunError(folder.string() + ": must be a folder, is a link to nothing that is there: remove it");
     if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
     expect_writable(folder);

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/input_file.h"
+#include "core/look.h"
 
 namespace mcdem::inline core {
 namespace {
@@ -33,7 +33,7 @@ constexpr std::array marks{
     Mark{FileKind::job_script, "a job script of mcdem", "#!/bin/bash\n# Written by mcdem", ""},
     Mark{FileKind::manual, "a manual page of mcdem", ".TH MCDEM", ""},
 };
-constexpr int head_size = 1 << 16, largest_figure = 1 << 24;  ///< a PDF names its producer at the end
+constexpr std::size_t head_size = 1 << 16, largest_figure = 1 << 24;  ///< a PDF names its producer at the end
 
 const Mark& mark_of(FileKind kind) {
     for (const Mark& mark : marks)
@@ -54,15 +54,9 @@ bool is_of_kind(std::string_view head, FileKind kind) {
 }  // namespace
 
 void expect_replaceable(const fs::path& file, FileKind kind) {
-    std::error_code error;
-    const auto status = fs::symlink_status(file, error);
-    if (status.type() == fs::file_type::not_found) return;
-    if (!fs::is_regular_file(file, error)) refuse(file, "exists and is not a regular file");
-    std::ifstream in(file, std::ios::binary);
-    std::string head(static_cast<std::size_t>(kind == FileKind::figure ? largest_figure : head_size), '\0');
-    in.read(head.data(), static_cast<std::streamsize>(head.size()));
-    if (!in.is_open() || in.bad()) refuse(file, "cannot be read");
-    head.resize(static_cast<std::size_t>(in.gcount()));
+    if (look_at_itself(file) == At::nothing) return;
+    if (!is_file(file)) refuse(file, "exists and is not a regular file");
+    const std::string head = read_beginning(file, kind == FileKind::figure ? largest_figure : head_size);
     if (!head.empty() && !is_of_kind(head, kind)) refuse(file, fmt::format("is not {}", mark_of(kind).what));
 }
 
@@ -73,15 +67,13 @@ void replace_own(const fs::path& file, FileKind kind, std::string_view text) {
 }
 
 void expect_no_answers(const fs::path& folder) {
-    std::error_code ignored;
-    if (fs::is_directory(folder / answers_folder, ignored))
+    if (is_folder(folder / answers_folder))
         throw InputError(folder.string() +
                          ": holds the diagnoses of a challenge: give another folder (--out)");
 }
 
 void expect_no_experiment(const fs::path& folder) {
-    std::error_code ignored;
-    if (fs::exists(folder / "experiment.toml", ignored))
+    if (is_there(folder / "experiment.toml"))
         throw InputError(fmt::format(
             "{}: is the folder of an experiment, into which nothing else is written: give another "
             "folder (--out)",

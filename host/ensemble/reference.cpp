@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
+#include "core/look.h"
 #include "experiment/experiment.h"
 
 namespace mcdem::inline ensemble {
@@ -22,7 +23,7 @@ Run run_of(const Experiment& experiment, int discard) {
 }  // namespace
 
 Run read_reference(const fs::path& path, int discard, ReadWhat what) {
-    if (fs::exists(path / "experiment.toml")) return run_of(read_experiment(path), discard);
+    if (is_there(path / "experiment.toml")) return run_of(read_experiment(path), discard);
     return read_run(path, what);
 }
 
@@ -35,7 +36,8 @@ Setting chosen_setting(const Run& run, const std::string& label, const std::stri
         known += (known.empty() ? "" : ", ") + setting.label;
     }
     if (!label.empty())
-        throw InputError(fmt::format("{}: must be one of {}'s: {}; got {}", option, where, known, label));
+        throw InputError(fmt::format("{}: must be one of {}'s: {}; got {}", option, where,
+                                     known.empty() ? "it has one, without a label" : known, label));
     if (settings.size() == 1) return settings.front();
     for (const auto& setting : settings)
         if (model_of(setting.replicas) == ContactModel::mc_dem) return setting;

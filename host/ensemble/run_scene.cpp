@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "core/errors.h"
+#include "core/look.h"
 #include "core/output_file.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/run_state.h"
@@ -162,7 +163,7 @@ ResultFolder open_folder(const RunOptions& options) {
 
 RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& options) try {
     expect_no_experiment(options.folder);
-    if (!std::filesystem::exists(run_file(options.folder))) expect_runnable(device, scene);
+    if (!is_there(run_file(options.folder))) expect_runnable(device, scene);
     ResultFolder folder = open_folder(options);
     expect_room_for_run(folder.path());
     if (folder.is_finished()) {

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <type_traits>
 
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/look.h"
 #include "core/sha256.h"
 #include "diagnose/infer/library.h"
 #include "ensemble/diagnosis/observation_store.h"
@@ -42,8 +42,7 @@ void look(std::vector<Verified>& all, const fs::path& file, Check check) {
 }
 
 std::vector<fs::path> sorted_files(const fs::path& folder) {
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+    std::vector<fs::path> files = entries_of(folder);
     std::ranges::sort(files);
     return files;
 }
@@ -65,7 +64,7 @@ void check_plate_table(const fs::path& folder) {
 void check_listed(const fs::path& folder, const std::set<std::string>& listed, std::vector<Verified>& all) {
     for (const std::string name : {"contacts.csv", "contacts.csv.gz", "experiment.toml", "grains.csv",
                                    "grains.csv.gz", "plate.csv", "plate.csv.gz"})
-        if (!listed.contains(name) && fs::exists(folder / name))
+        if (!listed.contains(name) && is_there(folder / name))
             all.push_back({folder / name, false,
                            fmt::format("{} does not name it: it was added later, or its line was taken out",
                                        sums_file)});
@@ -94,7 +93,7 @@ void check_sums(const fs::path& folder, std::vector<Verified>& all) {
 /// Checks the manifests of work in the folder.
 void check_manifests(const fs::path& folder, std::vector<Verified>& all) {
     for (const fs::path& file : {manifest_file(folder), device_file(folder)})
-        if (fs::exists(file))
+        if (is_there(file))
             look(all, file, [&] {
                 if (!read_manifest(file)) throw InputError("it is damaged");
             });
@@ -104,9 +103,9 @@ void check_run(const fs::path& folder, std::vector<Verified>& all) {
     const auto result = [&](const fs::path& file) {
         look(all, file, [&] { return check_result_file(file); });
     };
-    if (fs::exists(run_file(folder))) {
+    if (is_there(run_file(folder))) {
         result(run_file(folder));
-        if (fs::exists(folder / "plate.csv"))
+        if (is_there(folder / "plate.csv"))
             look(all, folder / "plate.csv", [&] { check_plate_table(folder); });
     }
     if (has_checkpoint(folder))
@@ -117,20 +116,20 @@ void check_run(const fs::path& folder, std::vector<Verified>& all) {
         all.push_back({folder, false, error.what()});
     }
     const fs::path parts = parts_folder(folder);
-    if (!fs::is_directory(parts)) return;
+    if (!is_folder(parts)) return;
     check_manifests(parts, all);
-    for (const auto& entry : fs::directory_iterator(parts))
-        if (entry.is_directory()) check_run(entry.path(), all);
+    for (const fs::path& entry : entries_of(parts))
+        if (is_folder(entry)) check_run(entry, all);
     for (const fs::path& file : sorted_files(parts))
         if (file.extension() == ".h5") result(file);
 }
 
 /// Checks a diagnosis or a library: library.json, and all stored simulations.
 void check_library(const fs::path& folder, std::vector<Verified>& all) {
-    if (fs::exists(folder / "library.json"))
+    if (is_there(folder / "library.json"))
         look(all, folder / "library.json", [&] { read_library(folder / "library.json"); });
     const fs::path simulations = folder / "simulations";
-    if (!fs::is_directory(simulations)) return;
+    if (!is_folder(simulations)) return;
     for (const fs::path& file : sorted_files(simulations)) {
         if (file.extension() == ".h5") look(all, file, [&] { return check_result_file(file); });
         if (file.extension() == ".obs")
@@ -143,7 +142,7 @@ void check_library(const fs::path& folder, std::vector<Verified>& all) {
 
 /// A library may have any name.
 bool is_json(const fs::path& file) {
-    return file.extension() == ".json" || (fs::is_regular_file(file) && std::ifstream(file).peek() == '{');
+    return file.extension() == ".json" || (is_file(file) && read_beginning(file, 1) == "{");
 }
 
 /// Checks a file outside of its folder.
@@ -168,16 +167,16 @@ void look_alone(std::vector<Verified>& all, const fs::path& file) {
 
 std::vector<Verified> verify(const fs::path& path) {
     std::vector<Verified> all;
-    if (!fs::is_directory(path)) {
+    if (!is_folder(path)) {
         look_alone(all, path);
         return all;
     }
     check_run(path, all);
     check_manifests(path, all);
     check_library(path, all);
-    if (fs::exists(path / sums_file))
+    if (is_there(path / sums_file))
         check_sums(path, all);
-    else if (fs::exists(path / "experiment.toml"))
+    else if (is_there(path / "experiment.toml"))
         look(all, path / "experiment.toml", [&] {
             read_experiment(path);
             return fmt::format("the experiment has no {}; all of it can be read", sums_file);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/errors.h"
+#include "core/look.h"
 #include "experiment/measurements.h"
 #include "experiment/settings.h"
 
@@ -47,18 +48,14 @@ void read_tables(const fs::path& folder, std::uintmax_t largest, Experiment& exp
 
 void expect_experiment(const fs::path& folder) {
     const auto settings = folder / "experiment.toml";
-    std::error_code error;
-    const auto status = fs::status(folder, error);
-    if (status.type() == fs::file_type::not_found)
+    if (!is_there(folder))
         throw InputError(folder.string() + ": must be an experiment's folder, got nothing there");
-    if (error) throw InputError(folder.string() + ": cannot be opened: " + error.message());
-    if (!fs::is_directory(status))
+    if (!is_folder(folder))
         throw InputError(folder.string() + ": must be an experiment's folder, got a file");
-    if (!fs::exists(fs::symlink_status(settings, error)))
+    if (look_at_itself(settings) == At::nothing)
         throw InputError(folder.string() + ": is not an experiment: it contains no experiment.toml");
-    if (!fs::is_regular_file(settings, error) || fs::file_size(settings, error) > largest_settings || error)
-        throw InputError(settings.string() + ": must be a text of at most 1 MB that can be read" +
-                         (error ? ": " + error.message() : ""));
+    if (!is_file(settings) || size_of_file(settings) > largest_settings)
+        throw InputError(settings.string() + ": must be a text of at most 1 MB that can be read");
 }
 
 }  // namespace

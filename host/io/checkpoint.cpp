@@ -2,6 +2,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/look.h"
 #include "io/hdf5.h"
 
 namespace mcdem::inline io {
@@ -81,7 +82,7 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& folder) {
 
 void expect_whole_checkpoint(const fs::path& file) { read_file(file); }
 
-bool has_checkpoint(const fs::path& folder) { return fs::exists(checkpoint_file(folder)); }
+bool has_checkpoint(const fs::path& folder) { return is_there(checkpoint_file(folder)); }
 
 void remove_checkpoint(const fs::path& folder) { fs::remove(checkpoint_file(folder)); }
 

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "core/container.h"
+#include "core/csv_text.h"
 #include "core/errors.h"
 #include "core/output_file.h"
 #include "core/parameters.h"
-#include "core/replaced.h"
 #include "io/results.h"
 
 namespace mcdem::inline io {
@@ -28,14 +28,9 @@ constexpr const char* header =
 
 constexpr std::pair<int, int> voigt[] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 
-std::string quoted(const std::string& text) {
-    return '"' + replaced(text, {{'"', "\"\""}, {'\n', " "}}) + '"';
-}
-
 /// Numbers are not changed, words are quoted.
 std::string value_text(const std::string& value) {
-    const bool is_number = !value.empty() && value.find_first_not_of("0123456789+-.eE") == value.npos;
-    return is_number || value.empty() ? value : quoted(without_quotes(value));
+    return is_number(value) || value.empty() ? value : csv_cell(without_quotes(value));
 }
 
 /// The force that presses a flat wall, or a face of a cell, outwards; NaN for a wall that is missing or not
@@ -72,7 +67,7 @@ std::string csv_text(const Run& run, const StopWanted& stop_wanted) {
     for (std::size_t r = 0; r < run.recordings.size(); ++r) {
         if (stop_wanted()) throw Interrupted();
         const Recording& recording = run.recordings[r];
-        const std::string label = quoted(recording.label);
+        const std::string label = csv_cell(recording.label);
         std::string parameters;
         for (const auto& key : keys)
             parameters.append(",").append(value_text(value_of(recording.parameters, key)));

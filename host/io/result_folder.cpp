@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/look.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "io/result_file.h"
@@ -66,8 +67,8 @@ fs::path run_file(const fs::path& folder) { return folder / "run.h5"; }
 
 std::vector<fs::path> segment_files(const fs::path& folder) {
     std::map<int, fs::path> found;
-    for (const auto& entry : fs::directory_iterator(folder))
-        if (const auto index = segment_index(entry.path())) found[*index] = entry.path();
+    for (const fs::path& entry : entries_of(folder))
+        if (const auto index = segment_index(entry)) found[*index] = entry;
     std::vector<fs::path> files;
     for (const auto& [index, file] : found) {
         if (index != static_cast<int>(files.size()))
@@ -79,11 +80,11 @@ std::vector<fs::path> segment_files(const fs::path& folder) {
 }
 
 std::vector<fs::path> result_files(const fs::path& file_or_folder) {
-    if (!fs::exists(file_or_folder))
+    if (!is_there(file_or_folder))
         throw InputError(file_or_folder.string() + ": must be a result folder or file, got nothing there");
-    if (!fs::is_directory(file_or_folder)) return {file_or_folder};
-    if (fs::exists(run_file(file_or_folder))) return {run_file(file_or_folder)};
-    if (fs::exists(parts_folder(file_or_folder)))
+    if (!is_folder(file_or_folder)) return {file_or_folder};
+    if (is_there(run_file(file_or_folder))) return {run_file(file_or_folder)};
+    if (is_there(parts_folder(file_or_folder)))
         throw InputError(
             file_or_folder.string() +
             ": holds parts of a run that are not merged yet: wait for the programs that compute them, or "
@@ -95,13 +96,13 @@ std::vector<fs::path> result_files(const fs::path& file_or_folder) {
 }
 
 fs::path file_of_a_run(const fs::path& folder) {
-    for (const auto& entry : fs::directory_iterator(folder))
-        if (belongs_to_a_run(entry.path())) return entry.path();
+    for (const fs::path& entry : entries_of(folder))
+        if (belongs_to_a_run(entry)) return entry;
     return {};
 }
 
 void make_result_folder(const fs::path& folder) {
-    if (fs::exists(folder) && !fs::is_directory(folder))
+    if (is_there(folder) && !is_folder(folder))
         throw InputError(folder.string() + ": is a file; give a folder for the results");
     make_folder(folder);
 }
@@ -118,11 +119,10 @@ ResultFolder ResultFolder::create(const fs::path& folder) {
 }
 
 ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
-    if (!fs::is_directory(folder))
-        throw InputError(folder.string() + ": no such folder, so nothing to resume");
+    if (!is_folder(folder)) throw InputError(folder.string() + ": no such folder, so nothing to resume");
     expect_writable(folder);
     ResultFolder found(folder, FolderLock(folder, FolderLock::Use::alone));
-    if (fs::exists(parts_folder(folder)))
+    if (is_there(parts_folder(folder)))
         throw InputError(
             folder.string() +
             ": holds parts of a run: continue with `mcdem run .. --resume`, or give another folder");
@@ -134,7 +134,7 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
     return found;
 }
 
-bool ResultFolder::is_finished() const { return fs::exists(run_file(folder_)); }
+bool ResultFolder::is_finished() const { return is_there(run_file(folder_)); }
 
 void ResultFolder::append_segment(const Run& scans_since_last) {
     write_run(segment_file(folder_, segments_), scans_since_last);
@@ -166,8 +166,8 @@ void ResultFolder::expect_whole_segments(const StopWanted& stop_wanted) const {
 }
 
 void ResultFolder::remove_segments() {
-    for (const auto& entry : fs::directory_iterator(folder_))
-        if (segment_index(entry.path())) fs::remove(entry.path());
+    for (const fs::path& entry : entries_of(folder_))
+        if (segment_index(entry)) fs::remove(entry);
     segments_ = 0;
 }
 
@@ -175,7 +175,7 @@ void ResultFolder::finish(const StopWanted& stop_wanted) {
     const auto segments = segment_files(folder_);
     if (segments.empty()) throw RunError(folder_.string() + ": nothing was recorded");
     // Locks exclude others, but not on every network file system.
-    if (fs::exists(run_file(folder_)) || fs::exists(parts_folder(folder_)))
+    if (is_there(run_file(folder_)) || is_there(parts_folder(folder_)))
         throw RunError(
             folder_.string() +
             ": another program has begun a run there meanwhile: both are left as they are; move one "

@@ -17,6 +17,13 @@ protected:
                 "TMPDIR=" + path("tmp").string()};
     }
     fs::path private_folder() const { return path("tmp") / ("mcdem-kernels-" + std::to_string(geteuid())); }
+    /// Compiled kernels below the folder.
+    static std::vector<fs::path> kernels_in(const fs::path& folder) {
+        std::vector<fs::path> files;
+        for (const auto& entry : fs::recursive_directory_iterator(folder))
+            if (entry.path().extension() == ".so") files.push_back(entry.path());
+        return files;
+    }
     static mode_t mode_of(const fs::path& folder) {
         struct stat what {};
         lstat(folder.c_str(), &what);
@@ -43,6 +50,74 @@ TEST_F(KernelCache, FolderOfAnotherUserIsNotUsed) {
     fs::permissions(private_folder(), fs::perms::all);
     expect_done(mcdem({"devices"}, nowhere_to_write()));
     EXPECT_TRUE(fs::is_empty(private_folder()));
+}
+
+TEST_F(KernelCache, WithoutAHomeKernelsAreKeptInAPrivateFolder) {
+    fs::create_directory(path("tmp"));
+    int runs = 0;
+    for (const char* home : {"HOME=", "HOME=/nonexistent", "HOME=/proc", "HOME=relative"}) {
+        expect_done(mcdem(run_words("run" + std::to_string(++runs)),
+                          {home, "XDG_CACHE_HOME=", "POCL_CACHE_DIR=", "TMPDIR=" + path("tmp").string()}));
+        EXPECT_FALSE(kernels_in(private_folder()).empty()) << home;
+        EXPECT_FALSE(fs::exists(path("relative"))) << home;
+        fs::remove_all(private_folder());
+    }
+}
+
+TEST_F(KernelCache, FolderWhereOthersCanWriteIsRefused) {
+    fs::create_directory(path("tmp"));
+    const std::string temporary = "TMPDIR=" + path("tmp").string(), base = path("base").string();
+    const std::vector<std::vector<std::string>> environments{
+        {"POCL_CACHE_DIR=" + base},
+        {"POCL_CACHE_DIR=" + base + "/below"},
+        {"POCL_CACHE_DIR=base"},
+        {"POCL_CACHE_DIR=", "XDG_CACHE_HOME=" + base},
+        {"POCL_CACHE_DIR=", "XDG_CACHE_HOME=", "HOME=" + base}};
+    for (auto environment : environments) {
+        environment.push_back(temporary);
+        for (const auto open : {fs::perms::group_write, fs::perms::others_write}) {
+            fs::create_directory(base);
+            fs::permissions(base, fs::perms::owner_all | open);
+            const auto devices = mcdem({"devices"}, environment);
+            expect_done(devices);
+            EXPECT_THAT(devices.err, testing::HasSubstr(base + ": others can write there (mode 07"))
+                << environment[0];
+            EXPECT_TRUE(fs::exists(private_folder()));
+            fs::remove_all(private_folder());
+            fs::remove_all(base);
+        }
+    }
+    fs::create_directory(base);
+    expect_done(mcdem(run_words("ours"), {"POCL_CACHE_DIR=base", temporary}));
+    EXPECT_FALSE(kernels_in(base).empty());
+    EXPECT_FALSE(fs::exists(private_folder()));
+}
+
+// They may have come when others could still write there.
+TEST_F(KernelCache, KernelsOfOthersAreNotLoaded) {
+    fs::create_directory(path("tmp"));
+    const std::vector<std::string> environment{"POCL_CACHE_DIR=" + path("cache").string(),
+                                               "TMPDIR=" + path("tmp").string()};
+    expect_done(mcdem(run_words("first"), environment));
+    const auto kernels = kernels_in(path("cache"));
+    ASSERT_FALSE(kernels.empty());
+    const auto expect_refused = [&](const std::string& run) {
+        const auto done = mcdem(run_words(run), environment);
+        expect_done(done);
+        EXPECT_THAT(done.err, testing::HasSubstr(": may hold compiled kernels of others: remove it"));
+        EXPECT_FALSE(kernels_in(private_folder()).empty());
+    };
+    if (geteuid() == 0) {
+        ASSERT_EQ(lchown(kernels.front().c_str(), 65534, 65534), 0);
+        expect_refused("owned");
+        ASSERT_EQ(lchown(kernels.front().c_str(), 0, 0), 0);
+    }
+    const auto done = mcdem(run_words("again"), environment);
+    expect_done(done);
+    EXPECT_THAT(done.err, testing::Not(testing::HasSubstr("of others")));
+    fs::rename(kernels.front(), path("moved.so"));
+    fs::create_symlink(path("moved.so"), kernels.front());
+    expect_refused("linked");
 }
 
 TEST_F(KernelCache, FailsIfNoFolderIsWritable) {

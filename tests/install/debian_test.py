@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 
-from installed import arguments, check_described, check_module, check_program, run
+from installed import arguments, check_described, check_module, check_program, check_run_paths, run
 
 
 
@@ -42,6 +42,7 @@ with tempfile.TemporaryDirectory(prefix="mcdem-deb-") as name:
                         "libmcdem-dev": ("libhdf5-dev",)}[package]:
             assert library in depends, f"{package}: depends on {depends}, not on {library}"
     check_installable(packages.values())
+    check_run_paths(root / "usr")
     check_described(root / "usr")
     check_program(root / "usr", folder)
     if python:

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tempfile
 
-from installed import arguments, check_described, check_module, check_program, environment_without_source, run
+from installed import arguments, check_described, check_module, check_program, check_run_paths, environment_without_source, run
 
 
 def check_manual(prefix):
@@ -51,6 +51,7 @@ def main():
         check_described(prefix)
         rendered = check_manual(prefix)
         check_no_source(source, prefix)
+        check_run_paths(prefix)
         if python:
             check_module(python, prefix)
         check_embedding(source, cmake, prefix, folder)

@@ -50,6 +50,25 @@ def check_module(python, prefix):
     assert (site / "mcdem/py.typed").exists() and (site / "mcdem/__init__.pyi").exists()
 
 
+def is_linked(file):
+    """Whether it is a program or a shared library: ELF of type EXEC or DYN, in the byte order of this machine."""
+    with open(file, "rb") as start:
+        head = start.read(18)
+    return head[:4] == b"\x7fELF" and int.from_bytes(head[16:18], sys.byteorder) in (2, 3)
+
+
+def check_run_paths(folder):
+    """No linked file searches libraries in the current folder: entries of its run path are absolute, or relative to the file itself."""
+    files = [file for file in sorted(folder.rglob("*")) if file.is_file() and not file.is_symlink() and is_linked(file)]
+    assert files, f"{folder}: nothing is linked there"
+    for file in files:
+        for line in run("readelf", "-d", "-W", file).splitlines():
+            if "RPATH" in line or "RUNPATH" in line:
+                path = line[line.index("[") + 1:line.rindex("]")]
+                assert all(entry.startswith(("/", "$ORIGIN")) for entry in path.split(":")), f"{file}: run path [{path}]"
+    return files
+
+
 def arguments():
     """SOURCE BUILD CMAKE PYTHON; PYTHON is empty if the module was not built."""
     source, build = (pathlib.Path(word).resolve() for word in sys.argv[1:3])

@@ -97,6 +97,18 @@ TEST(csv, cells_have_strains_and_forces_through_their_faces) {
     for (std::size_t column = 10; column < 14; ++column) EXPECT_NE(cells(cell)[column], "nan");
 }
 
+TEST(csv, labels_and_values_never_start_a_formula) {
+    auto run = synthetic_run();
+    run.recordings[0].label = "=HYPERLINK(\"http://a\",1), mc_dem";
+    run.recordings[1].label = "-0.5";
+    run.recordings[0].parameters["packing.file"] = "\"@a.lammps\"";
+    run.recordings[1].parameters["packing.file"] = "\"b.lammps\"";
+    const std::string text = csv_text(run);
+    EXPECT_NE(text.find("\n0,\"'=HYPERLINK(\"\"http://a\"\",1), mc_dem\",0,"), text.npos) << text;
+    EXPECT_NE(text.find("\n1,\"-0.5\",0,"), text.npos) << text;
+    EXPECT_NE(text.find(",\"'@a.lammps\"\n"), text.npos) << text;
+}
+
 TEST(csv, keys_that_differ_between_replicas_have_columns) {
     auto run = synthetic_run();
     ASSERT_GE(run.recordings.size(), 2u);

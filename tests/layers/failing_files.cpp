@@ -63,8 +63,9 @@ Turn turn_of(const char* kind, const std::string& path) {
 bool fails(const char* kind, const std::string& path) { return turn_of(kind, path) == Turn::fails; }
 
 bool exists(const std::string& path) {
+    REAL(lstat);
     struct stat status {};
-    return lstat(path.c_str(), &status) == 0;
+    return real_lstat(path.c_str(), &status) == 0;
 }
 
 template <class Open>
@@ -293,9 +294,28 @@ static int really_rmdir(const std::string& path) {
     return real_rmdir(path.c_str());
 }
 static bool is_folder(const std::string& path) {
+    REAL(lstat);
     struct stat status {};
-    return lstat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
+    return real_lstat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
 }
+
+#define LOOK(name, status_type)                                                                     \
+    int name(const char* path, struct status_type* status) {                                        \
+        REAL(name);                                                                                 \
+        return changed("stat", path_of(AT_FDCWD, path), [&] { return real_##name(path, status); }); \
+    }
+LOOK(stat, stat)
+LOOK(lstat, stat)
+LOOK(stat64, stat64)
+LOOK(lstat64, stat64)
+#define LOOK_AT(name, status_type)                                                  \
+    int name(int folder, const char* path, struct status_type* status, int flags) { \
+        REAL(name);                                                                 \
+        const auto look = [&] { return real_##name(folder, path, status, flags); }; \
+        return *path ? changed("stat", path_of(folder, path), look) : look();       \
+    }
+LOOK_AT(fstatat, stat)
+LOOK_AT(fstatat64, stat64)
 int unlink(const char* path) { return removed(path_of(AT_FDCWD, path), false, really_unlink); }
 int rmdir(const char* path) { return removed(path_of(AT_FDCWD, path), true, really_rmdir); }
 int remove(const char* name) {

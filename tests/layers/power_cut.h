@@ -20,7 +20,8 @@ template <class Function>
 Function real(const char* name) {
     return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
-#define REAL(name) static const auto real_##name = real<decltype(&::name)>(#name)
+#define REAL(name) \
+    static const auto real_##name = real<decltype(&::name)>(#name)  // stat: of the function, not the type
 
 std::string setting(const char* name) {
     const char* value = std::getenv(name);
@@ -102,7 +103,8 @@ void lose_data(const std::string& folder) {
     while (const dirent* entry = ::readdir(open)) {
         const std::string name = entry->d_name, path = folder + "/" + name;
         struct stat status {};
-        if (name == "." || name == ".." || lstat(path.c_str(), &status) != 0) continue;
+        REAL(lstat);
+        if (name == "." || name == ".." || real_lstat(path.c_str(), &status) != 0) continue;
         if (S_ISDIR(status.st_mode)) lose_data(path);
         const auto found = unsynced.find({status.st_dev, status.st_ino});
         if (found != unsynced.end()) (void)!::truncate(path.c_str(), std::min(found->second, status.st_size));
@@ -131,8 +133,9 @@ void undo(const Entry& entry) {
     if (fault == "CUT")
         for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
             // A folder is restored with its contents.
+            REAL(stat);
             struct stat status {};
-            if (entry->kind == Entry::renamed && stat(entry->path.c_str(), &status) == 0 &&
+            if (entry->kind == Entry::renamed && real_stat(entry->path.c_str(), &status) == 0 &&
                 S_ISDIR(status.st_mode))
                 real_rename(entry->path.c_str(), entry->before.c_str());
             else

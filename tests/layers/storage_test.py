@@ -306,8 +306,9 @@ def from_run_refuses_values_that_are_not_numbers(place):
            "/particles/replica_00001/position/value: grain 3 has a value that is no number")
 
 
-def main():
-    tests = [test for name, test in globals().items()
+def run_tests(known):
+    """Runs the functions with the argument `place` of a module, in a folder each."""
+    tests = [test for name, test in known.items()
              if callable(test) and getattr(test, "__code__", None) and test.__code__.co_varnames[:1] == ("place",)
              and test not in (mcdem, whole_run, stopped_before_merge)]
     wanted = sys.argv[3] if len(sys.argv) > 3 else ""
@@ -329,4 +330,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_tests(globals()))

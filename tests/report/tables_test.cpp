@@ -95,6 +95,13 @@ TEST(CsvOfModels, has_a_column_for_each_key_that_differs) {
               "gamma=1.125,1.125,30,12,,gamma=1,1,,1,0\n");
 }
 
+TEST(CsvOfModels, starts_no_formula) {
+    auto run = synthetic::run({{.model = "mc_dem", .top = 12}}, 1);
+    run.recordings[0].label = "=1+1, mc_dem";
+    const auto settings = group_by_setting(run);
+    EXPECT_NE(csv_of_models(model_table(settings), settings).find("\n\"'=1+1, mc_dem\","), std::string::npos);
+}
+
 TEST(TableOfComparisons, has_the_papers_columns_and_units) {
     Comparison c;
     c.setting = "mc_dem";

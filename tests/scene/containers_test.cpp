@@ -69,9 +69,11 @@ TEST(Containers, SizesOfOtherShapesAreRefused) {
 }
 
 TEST(Containers, TooSmallForTheirGrainsAreRefused) {
-    EXPECT_THAT(problems_in("[container]\nshape = \"cylinder\"\nradius = 0.024\n" + sparse +
-                            "[plate]\nstart = 3\nend = 2\n"),
-                ElementsAre(HasSubstr("bad.toml:3: container.radius must be at least the largest diameter")));
+    EXPECT_THAT(
+        problems_in("[container]\nshape = \"cylinder\"\nradius = 0.024\n" + sparse +
+                    "[plate]\nstart = 3\nend = 2\n"),
+        ElementsAre(AllOf(HasSubstr("bad.toml:3: container.radius must be at least the largest diameter"),
+                          testing::Not(HasSubstr("()")))));
     const std::string cell =
         "[container]\nshape = \"periodic\"\nsize_x = 0.056\nsize_y = 0.2\n[plate]\nstart = 3\nend = 2\n";
     EXPECT_THAT(problems_in(cell + sparse),

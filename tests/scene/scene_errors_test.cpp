@@ -243,6 +243,17 @@ TEST(PackingFileErrors, GeneratedGrainsWithAFileAreRefused) {
                 ElementsAre(HasSubstr("--set packing.count: packing.count must be left out")));
 }
 
+TEST(PackingFileErrors, ANarrowCylinderIsNamedWithTheFile) {
+    const TestFolder folder;
+    folder.write("one.csv", "x_m,y_m,z_m,diameter_m\n0.012,0.012,0.05,0.02\n");
+    const auto narrow = folder.write(
+        "narrow.toml", "[packing]\nfile = \"one.csv\"\n[container]\nshape = \"cylinder\"\nradius = 0.012\n");
+    EXPECT_THAT(problems_of([&] { read_scene(narrow); }),
+                ElementsAre(testing::AllOf(
+                    HasSubstr("one.csv: container.radius must be at least the largest diameter"),
+                    testing::EndsWith("in a narrower cylinder"))));
+}
+
 TEST(PackingFileErrors, IdenticalCopiesAreRefused) {
     const TestFolder folder;
     folder.write("one.csv", "x_m,y_m,z_m,diameter_m\n0.05,0.05,0.05,0.02\n");
@@ -266,14 +277,6 @@ TEST(HostileScenes, AreRefusedWithPlainMessages) {
     EXPECT_THAT(problems_in(std::string(2 << 20, ' ')),
                 ElementsAre(HasSubstr("must be at most 1048576 bytes")));
     EXPECT_THAT(problems_in(std::string(100000, '[')), ElementsAre(HasSubstr("must be TOML")));
-    std::string nested = "a";
-    for (int depth = 0; depth < 300000; ++depth) nested += ".a";
-    EXPECT_THAT(problems_in(nested + " = 1"), ElementsAre(HasSubstr("must have at most 50000 dots")));
-    for (char& c : nested) c = c == 'a' ? '0' : c;
-    EXPECT_THAT(problems_in(nested + " = 1"), ElementsAre(HasSubstr("must have at most 50000 dots")));
-    EXPECT_THAT(problems_in(nested.substr(0, 1999) + " = 1"),
-                ElementsAre(HasSubstr("must be a table of a scene")));
-    EXPECT_THAT(problems_in("", {"grains={" + nested + "=1}"}), SizeIs(1));
     std::string many;
     for (int i = 0; i < 20000; ++i) many += "key" + std::to_string(i) + " = 1\n";
     EXPECT_THAT(problems_in(many), SizeIs(101)) << "a hundred, and how many more";
@@ -286,6 +289,43 @@ TEST(HostileScenes, AreRefusedWithPlainMessages) {
     }
     EXPECT_THAT(problems_in(variations),
                 ElementsAre(HasSubstr("at most 10000 replicas in all, got 6.25e+14")));
+}
+
+/// `part` as often as 100 parts of a name, or 100 tables inside each other, and more often.
+std::string repeated(int times, const std::string& part, const std::string& between = ".") {
+    std::string all = part;
+    for (int i = 1; i < times; ++i) all += between + part;
+    return all;
+}
+
+TEST(HostileScenes, DeepNamesAreRefusedBeforeTheyAreParsed) {
+    const auto too_deep = ElementsAre(HasSubstr("names must have at most 100 parts"));
+    for (const int times : {102, 5'000, 40'000, 160'000}) {
+        for (const std::string part : {"a", "0", "\"a.b\"", "'a'", " a ", "\"\""}) {
+            const std::string name = repeated(times, part);
+            EXPECT_THAT(problems_in(name + " = 1"), too_deep);
+            EXPECT_THAT(problems_in("[" + name + "]\nb = 1"), too_deep);
+            EXPECT_THAT(problems_in("[[" + name + "]]\nb = 1"), too_deep);
+            EXPECT_THAT(problems_in("a = {" + name + " = 1}"), too_deep);
+            EXPECT_THAT(problems_in("a = [\n1.5, # [ \"\n{b = 2.5, " + name + " = 1}]"), too_deep);
+            EXPECT_THAT(problems_in("", {"grains={" + name + "=1}"}), SizeIs(1));
+            EXPECT_THAT(problems_in("", {name + "=1"}), SizeIs(1));
+            EXPECT_THAT(problems_in("a = \"\"\"\\\"\"\"\"\"\"\n" + name + " = 1"), too_deep)
+                << "after a text";
+        }
+    }
+    // 51 names of three parts inside each other.
+    EXPECT_THAT(problems_in("a.a.a = " + repeated(50, "{a.a.a", " = ") + " = 1" + std::string(50, '}')),
+                too_deep);
+    EXPECT_THAT(
+        problems_in("a = [" + repeated(120, "1.5", ", ") + "]\n" + repeated(300, "[a]\nb = 1.5", "\n")),
+        ElementsAre(testing::Not(HasSubstr("100 parts"))))
+        << "long, not deep";
+}
+
+TEST(HostileScenes, NamesOfHundredPartsAreRead) {
+    EXPECT_THAT(problems_in(repeated(100, "a") + " = 1"),
+                ElementsAre(HasSubstr("must be a table of a scene")));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
 #include "core/errors.h"
+#include "core/look.h"
 #include "core/output_file.h"
 #include "io/result_folder.h"
 #include "report/page/text_table.h"
@@ -255,7 +256,7 @@ void print(const ChallengeScore& score) {
 }
 
 void expect_folder(const std::filesystem::path& diagnoses) {
-    if (!std::filesystem::is_directory(diagnoses))
+    if (!is_folder(diagnoses))
         throw InputError(diagnoses.string() + ": must be the folder of the diagnoses, got none");
 }
 

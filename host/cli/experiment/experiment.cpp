@@ -4,11 +4,9 @@
 
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
-#include "core/atomic_file.h"
 #include "core/errors.h"
 #include "diagnose/observe/needed_to_diagnose.h"
 #include "experiment/check_experiment.h"
-#include "io/result_folder.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -79,27 +77,6 @@ void add_experiment_check(CLI::App& experiment) {
 
 }  // namespace
 
-void expect_free(const fs::path& out) {
-    std::error_code ignored;
-    for (const char* taken : {"experiment.toml", "run.h5", "checkpoint.h5"})
-        if (fs::exists(out / taken, ignored))
-            throw InputError(
-                fmt::format("--out: {} holds another experiment or run: name another folder", out.string()));
-    for (const char* table : {"contacts.csv", "grains.csv", "plate.csv"})
-        for (const char* end : {"", ".gz"})
-            if (fs::exists(out / (std::string(table) + end), ignored))
-                throw InputError(
-                    fmt::format("--out: {} already contains {}{}, which would become part of this "
-                                "experiment: choose another folder, or remove the file first",
-                                out.string(), table, end));
-    for (auto path = fs::absolute(out); path.has_relative_path(); path = path.parent_path())
-        if (fs::exists(path, ignored) && !fs::is_directory(path, ignored))
-            throw InputError(fmt::format("--out: {} must be a folder, got a file{}", out.string(),
-                                         path.filename() == out.filename()
-                                             ? ""
-                                             : fmt::format(" in its path, {}", path.filename().string())));
-}
-
 fs::path whole_path(const std::string& folder) {
     const fs::path path = fs::absolute(folder).lexically_normal();
     return path.has_filename() ? path : path.parent_path();
@@ -116,14 +93,6 @@ Experiment read_back(const fs::path& folder, const std::string& out, const std::
         }
         throw InputError(problems);
     }
-}
-
-void put_in_place(const fs::path& work, const fs::path& out) {
-    const FolderLock lock = open_output_folder(out);
-    expect_free(out);  // checked again
-    for (const char* name : {"contacts.csv", "grains.csv", "plate.csv", sums_file, "experiment.toml"})
-        for (const std::string end : {"", ".gz"})
-            if (fs::exists(work / (name + end))) move_file(work / (name + end), out / (name + end));
 }
 
 void add_experiment(CLI::App& app, int& exit_code) {

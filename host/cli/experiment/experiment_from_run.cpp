@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cli/experiment/experiment.h"
+#include "cli/experiment/publish.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/standard_streams.h"
@@ -38,7 +39,7 @@ std::size_t chosen_replica(const Run& run, const FromRunCommand& command) {
     std::string known;
     for (std::size_t r = 0; r < all.size(); ++r) {
         if (all[r].label == command.replica) return r;
-        known += fmt::format("{}{}: {}", r ? ", " : "", r, all[r].label);
+        known += fmt::format("{}{}{}", r ? ", " : "", r, all[r].label.empty() ? "" : ": " + all[r].label);
     }
     const auto index = to_whole_number(command.replica);
     if (index && *index >= 0 && static_cast<std::size_t>(*index) < all.size())
@@ -54,7 +55,7 @@ Recording read_replica(const FromRunCommand& command) {
     Recording recording = reader.run().recordings[replica];
     for (std::size_t s = 0; s < recording.scans.size(); ++s)
         recording.scans[s] = reader.read_scan(replica, s);
-    recording.label = fmt::format("{}, {}", reader.run().name, recording.label);
+    recording.label = reader.run().name + (recording.label.empty() ? "" : ", " + recording.label);
     if (recording.diameter.empty()) throw InputError(command.run + ": holds no grains of this replica");
     if (recording.scans.empty()) throw InputError(command.run + ": holds no scan of this replica");
     for (const Scan& scan : recording.scans)
@@ -127,13 +128,12 @@ void warn_of_start(const Recording& truth) {
             1e3 * truth.displacement(first));
 }
 
-/// In a folder of its own first. If `out` does not exist, this folder is renamed, so that a killed call
-/// leaves no part of an experiment.
+/// In a folder of its own first, so that a killed call leaves no part of an experiment.
 void write_files(const FromRunCommand& command, const Experiment& experiment) {
     auto files = experiment_files(experiment, command.gzip ? Packed::gzip : Packed::plain);
     files[sums_file] = sums_text(files);
     const fs::path out = whole_path(command.out);
-    const fs::path place = fs::exists(out) ? out / "experiment" : out;  // on the same file system
+    const fs::path place = place_of_work(out);
     make_folder(place.parent_path());
     remove_temporaries_of(place);
     const NewFolder beside(place);
@@ -146,10 +146,7 @@ void write_files(const FromRunCommand& command, const Experiment& experiment) {
               command.run +
                   ": does not give a valid experiment, so nothing is written. Run the scene again, or lower "
                   "the measurement errors. Problems:");
-    if (place == out)
-        move_file(work, out);
-    else
-        put_in_place(work, out);
+    publish(work, out);
 }
 
 void make_experiment(const FromRunCommand& command) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cli/experiment/experiment.h"
+#include "cli/experiment/publish.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/python_program.h"
@@ -12,6 +13,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/look.h"
 #include "core/make_folder.h"
 #include "core/parameters.h"
 #include "experiment/settings.h"
@@ -30,10 +32,9 @@ struct ImportCommand {
 };
 
 std::string text_of_file(const std::string& file) {
-    std::error_code error;
-    if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > 1'000'000 || error)
+    if (!is_file(file) || size_of_file(file) > 1'000'000)
         throw InputError(fmt::format("{}: must be a text of at most 1 MB, got {}", file,
-                                     fs::exists(file, error) ? "something else" : "no such file"));
+                                     is_there(file) ? "something else" : "no such file"));
     return read_file(file);
 }
 
@@ -107,6 +108,18 @@ void print_summary(const std::string& out, const Recording& recording) {
               recording.diameter.size(), measured, contacts);
 }
 
+/// The folder in `work` with all files of the experiment and no others.
+fs::path experiment_of(const fs::path& work, const Experiment& known) {
+    const fs::path whole = work / "experiment";
+    make_folder(whole);
+    for (const std::string name : {"contacts.csv", "grains.csv", "plate.csv"})
+        for (const std::string end : {"", ".gz"})
+            if (is_there(work / (name + end))) move_file(work / (name + end), whole / (name + end));
+    replace_file(whole / "mapping.toml", read_file(work / "mapping.toml"));
+    replace_file(whole / "experiment.toml", settings_text(known));
+    return whole;
+}
+
 int run_import(const ImportCommand& command) {
     expect_free(command.out);
     if (command.voxel_size && !(*command.voxel_size > 0 && *command.voxel_size <= largest_voxel))
@@ -115,9 +128,10 @@ int run_import(const ImportCommand& command) {
     FileProblems settings;
     Experiment known = known_of(command, settings);
     const fs::path out = whole_path(command.out);
-    make_folder(out.parent_path());
-    remove_temporaries_of(out);
-    const NewFolder beside(out);
+    const fs::path place = place_of_work(out);
+    make_folder(place.parent_path());
+    remove_temporaries_of(place);
+    const NewFolder beside(place);
     const fs::path& work = beside.path();
     const int exit_code = read_tables(command, request_of(command, known, settings), work);
     if (exit_code != exit_done) return exit_code;
@@ -125,12 +139,11 @@ int run_import(const ImportCommand& command) {
     if (result.contains("problems")) refuse(command, work, result["problems"], result["wrong_rows"]);
     if (std::isnan(known.recording.plate_start))
         known.recording.plate_start = std::stod(result["plate_start"].get<std::string>());
-    replace_file(work / "experiment.toml", settings_text(known));
+    const fs::path whole = experiment_of(work, known);
     try {
-        const Experiment read = read_back(work, fs::path(command.out).lexically_normal().string(),
+        const Experiment read = read_back(whole, fs::path(command.out).lexically_normal().string(),
                                           "with this mapping the tables do not give a valid experiment:");
-        put_in_place(work, out);
-        create_file(kept_mapping(command), read_file(work / "mapping.toml"));
+        publish(whole, out);
         for (const std::string note : result["notes"]) spdlog::warn("{}", note);
         print_summary(command.out, read.recording);
     } catch (const InputError& error) {

@@ -14,6 +14,7 @@
 #include "cli/shell/subprocess.h"
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/look.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/replaced.h"
@@ -135,7 +136,7 @@ std::string submit(const SlurmJob& job, const std::vector<std::size_t>& all_part
         all_parts.begin() + static_cast<std::ptrdiff_t>(std::min(max_tasks, all_parts.size())));
     const fs::path script = job.folder / "job.sh";
     expect_replaceable(script, FileKind::job_script);
-    if (const auto there = fs::exists(script) ? queued_for_certain(job) : ""; !there.empty()) {
+    if (const auto there = is_there(script) ? queued_for_certain(job) : ""; !there.empty()) {
         spdlog::info("job {} of this work is still pending or running", there);
         return there;
     }

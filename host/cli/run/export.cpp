@@ -7,6 +7,7 @@
 #include "cli/shell/python_program.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/look.h"
 #include "io/result_folder.h"
 #include "io/results.h"
 
@@ -27,7 +28,7 @@ bool chosen(const std::vector<int>& numbers, int number) {
 
 /// The files of the run, after all that is exported was read once: the Python module relies on its form.
 std::vector<fs::path> checked_files(const ExportCommand& command) {
-    if (!fs::exists(command.run))
+    if (!is_there(command.run))
         throw InputError(command.run + ": must be a result folder or file, got nothing there");
     RunReader reader(command.run);
     const auto& recordings = reader.run().recordings;
@@ -55,9 +56,9 @@ int run_export(const ExportCommand& command) {
     if (!command.vtk && !command.xyz) throw InputError("export: choose a format: vtk, xyz or both");
     const auto files = checked_files(command);
     const FolderLock lock = open_output_folder(command.out);
-    for (const auto& entry : fs::directory_iterator(command.out))  // of earlier exports
-        if (!entry.is_symlink() && entry.path().filename().string().starts_with("replica_"))
-            remove_temporaries(entry.path());
+    for (const fs::path& entry : entries_of(command.out))  // of earlier exports
+        if (look_at_itself(entry) != At::link && entry.filename().string().starts_with("replica_"))
+            remove_temporaries(entry);
     std::vector<std::string> words;
     if (command.vtk) words.push_back("--vtk");
     if (command.xyz) words.push_back("--xyz");

@@ -6,6 +6,7 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/python_program.h"
 #include "core/errors.h"
+#include "core/look.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "io/result_folder.h"
@@ -66,7 +67,7 @@ std::vector<fs::path> draw_if_possible(const std::function<std::vector<fs::path>
 }
 
 std::vector<fs::path> draw_run(const fs::path& folder) {
-    if (fs::file_size(run_file(folder)) > max_bytes_read) {
+    if (size_of_file(run_file(folder)) > max_bytes_read) {
         spdlog::info("no figures of so large a run: `mcdem figures {} --out DIR` draws them",
                      folder.string());
         return {};

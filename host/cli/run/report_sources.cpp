@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/input_file.h"
+#include "core/look.h"
 #include "core/sha256.h"
 #include "io/result_folder.h"
 #include "report/diagnosis/diagnosis_json.h"
@@ -77,7 +78,7 @@ std::vector<std::string> notes_of(const std::vector<std::pair<std::string, std::
 
 std::optional<std::filesystem::path> diagnosis_file(const std::filesystem::path& path) {
     if (path.extension() == ".json") return path;
-    if (std::filesystem::exists(path / "diagnosis.json")) return path / "diagnosis.json";
+    if (is_there(path / "diagnosis.json")) return path / "diagnosis.json";
     return std::nullopt;
 }
 

@@ -11,6 +11,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/standard_streams.h"
+#include "core/stack.h"
 #include "core/version.h"
 #include "io/results.h"
 #include "scene/packing/read_packing.h"
@@ -93,8 +94,9 @@ int command_line(int argc, const char* const* argv) {
 
 constexpr char hint[] =
     "mcdem: ended by a defect of the program or of the OpenCL driver. If it happens again, remove the "
-    "compiled kernels (folder POCL_CACHE_DIR, or ~/.cache/pocl/kcache), which may be damaged; they are "
-    "compiled again. Continue a run with --resume.\n";
+    "compiled kernels (folder POCL_CACHE_DIR, ~/.cache/pocl/kcache or mcdem-kernels-.. in /tmp), which may "
+    "be "
+    "damaged; they are compiled again. Continue a run with --resume.\n";
 
 void say_hint(int signal) {
     const ssize_t written = write(STDERR_FILENO, hint, sizeof hint - 1);
@@ -128,8 +130,10 @@ int run_cli(int argc, const char* const* argv) {
         return exit_failed;
     }
     try {
+        expect_enough_stack();
         hint_at_crashes();
         opencl_started = hint_at_crashes;
+        kernel_cache_refused = [](const std::string& why) { spdlog::warn("{}", why); };
         read_run_packing = packing_of_run;
         return exit_code_of_output(command_line(argc, argv));
     } catch (const std::exception& error) {

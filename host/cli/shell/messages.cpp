@@ -42,8 +42,8 @@ const char* remedy_of(cl_int code) {
                    "(`mcdem devices` lists those that answer)";
         default:
             return "the device or its driver has failed (`mcdem devices` lists those that answer), or, with "
-                   "PoCL, its compiled kernels are damaged (remove the folder that POCL_CACHE_DIR names, or "
-                   "~/.cache/pocl/kcache)";
+                   "PoCL, its compiled kernels are damaged (remove the folder that POCL_CACHE_DIR names, "
+                   "~/.cache/pocl/kcache or mcdem-kernels-.. in /tmp)";
     }
 }
 

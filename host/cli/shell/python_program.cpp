@@ -13,6 +13,7 @@
 #include "cli/shell/interrupt.h"
 #include "cli/shell/subprocess.h"
 #include "core/errors.h"
+#include "core/look.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -45,7 +46,7 @@ fs::path package_folder() {
     if (chosen.empty())
         folders = {this_program().parent_path().parent_path() / "share/mcdem/python", MCDEM_SOURCE_PYTHON};
     for (const fs::path& folder : folders)
-        if (std::error_code ignored; fs::exists(folder / "mcdem/program.py", ignored)) return folder;
+        if (is_there(folder / "mcdem/program.py")) return folder;
     std::string looked;
     for (const fs::path& folder : folders) looked += (looked.empty() ? "" : " or ") + folder.string();
     throw RunError(

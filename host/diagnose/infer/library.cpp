@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/look.h"
 #include "core/sha256.h"
 #include "diagnose/infer/json_numbers.h"
 
@@ -111,9 +112,8 @@ bool write_library(const std::filesystem::path& file, const Library& library) {
 }
 
 Library read_library(const std::filesystem::path& file) {
-    if (!std::filesystem::exists(file))
-        throw InputError(fmt::format("{}: there is no signature library", file.string()));
-    if (!std::filesystem::is_regular_file(file))
+    if (!is_there(file)) throw InputError(fmt::format("{}: there is no signature library", file.string()));
+    if (!is_file(file))
         throw InputError(fmt::format("{}: must be a file, the signature library", file.string()));
     const std::string text = read_file(file);
     try {

@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/look.h"
 #include "ensemble/diagnosis/change_of_the_scene.h"
 #include "ensemble/diagnosis/library_origin.h"
 #include "ensemble/diagnosis/other_protocols.h"
@@ -106,7 +107,7 @@ private:
         Evidence evidence;
         evidence.seed = options_.seed;
         if (options_.library) remove_temporaries_of(*options_.library);  // left by an interrupted diagnosis
-        const bool ready = options_.library && std::filesystem::exists(*options_.library);
+        const bool ready = options_.library && is_there(*options_.library);
         if (ready) {  // before any other work
             evidence.library = read_library(*options_.library);
             expect_origin(evidence.library,

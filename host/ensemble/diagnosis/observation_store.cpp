@@ -5,6 +5,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/look.h"
 #include "core/make_folder.h"
 #include "core/sha256.h"
 #include "io/results.h"
@@ -21,7 +22,7 @@ std::string digest_of(const Eigen::VectorXd& values) {
 
 std::optional<Eigen::VectorXd> read_observation(const std::filesystem::path& file) {
     constexpr std::size_t digest_length = 64;
-    if (!std::filesystem::exists(file)) return std::nullopt;
+    if (!is_there(file)) return std::nullopt;
     const std::string bytes = read_file(file);
     if (bytes.size() < digest_length || (bytes.size() - digest_length) % sizeof(double) != 0)
         return std::nullopt;
@@ -55,7 +56,7 @@ std::filesystem::path ObservationStore::recording_file(const std::string& name) 
 }
 
 bool ObservationStore::has_recording(const std::string& name) const {
-    if (!std::filesystem::exists(recording_file(name))) return false;
+    if (!is_there(recording_file(name))) return false;
     try {
         return recording(name).diameter.size() > 0;
     } catch (const InputError&) {

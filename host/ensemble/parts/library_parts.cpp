@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/errors.h"
+#include "core/look.h"
 #include "diagnose/observe/needed_to_diagnose.h"
 #include "ensemble/parts/manifest.h"
 #include "io/folder_lock.h"
@@ -20,7 +21,7 @@ public:
           lock_(options.folder, FolderLock::Use::shared),
           store_(options.folder / "simulations"),
           common_(std::move(plan.common)) {
-        if (options.library && std::filesystem::exists(*options.library)) return;
+        if (options.library && is_there(*options.library)) return;
         auto trials = library_trials(plan.library);
         if (options.paper_metrics) keep_recordings(trials);
         parts_ = parts_of_trials(common_, trials);

@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/look.h"
 #include "core/sha256.h"
 
 namespace mcdem::inline ensemble {
@@ -42,7 +43,7 @@ std::filesystem::path manifest_file(const std::filesystem::path& folder) { retur
 std::filesystem::path device_file(const std::filesystem::path& folder) { return folder / "device.json"; }
 
 std::optional<Manifest> read_manifest(const std::filesystem::path& file) {
-    if (!std::filesystem::exists(file)) return std::nullopt;
+    if (!is_there(file)) return std::nullopt;
     const auto read = nlohmann::json::parse(read_file(file), nullptr, false);
     Manifest found;
     if (!read.is_object() || read.empty()) return std::nullopt;

@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/look.h"
 #include "core/make_folder.h"
 #include "ensemble/parts/manifest.h"
 #include "ensemble/run_state.h"
@@ -34,16 +35,16 @@ std::string work_prefix(std::size_t part) { return part_name(part) + ".work-"; }
 fs::path old_parts(const fs::path& folder) { return folder / "parts.merged"; }
 
 bool is_merged(const fs::path& folder) {
-    return fs::exists(run_file(folder)) && !fs::exists(parts_folder(folder));
+    return is_there(run_file(folder)) && !is_there(parts_folder(folder));
 }
 
 /// Number of grains of a replica, as far as a scene determines it without its packing.
 double grains_of(const Replica& replica) {
     if (const auto* drawn = std::get_if<GeneratedPacking>(&replica.packing.source)) return drawn->count;
     constexpr double bytes_of_a_grain = 50;  // approximate, in a packing file
-    std::error_code missing;
-    const auto bytes = fs::file_size(std::get<PackingFile>(replica.packing.source).path, missing);
-    return missing ? 1 : std::max(1.0, static_cast<double>(bytes) / bytes_of_a_grain);
+    const fs::path& file = std::get<PackingFile>(replica.packing.source).path;
+    const auto bytes = is_file(file) ? size_of_file(file) : 0;  // reading reports that it is missing
+    return std::max(1.0, static_cast<double>(bytes) / bytes_of_a_grain);
 }
 
 /// As many replicas as fill a device, but at most so many that every worker has two parts, to shorten the
@@ -72,7 +73,7 @@ std::size_t size_in(const Manifest& kept, const fs::path& file) {
 
 /// Throws if the folder contains a run of a single process.
 void expect_no_run_of_one(const fs::path& folder) {
-    if (fs::exists(parts_folder(folder))) return;
+    if (is_there(parts_folder(folder))) return;
     if (has_checkpoint(folder) || !segment_files(folder).empty())
         throw InputError(folder.string() +
                          ": holds an interrupted run of one program: continue it by --resume alone, or give "
@@ -91,7 +92,7 @@ FolderLock lock_for_sharing(const fs::path& folder, const Scene& scene) {
 
 }  // namespace
 
-bool is_run_in_parts(const fs::path& folder) { return fs::exists(parts_folder(folder)); }
+bool is_run_in_parts(const fs::path& folder) { return is_there(parts_folder(folder)); }
 
 RunParts::RunParts(const Scene& scene, const RunOptions& options, const RunCut& cut)
     : scene_(scene), options_(options), lock_(lock_for_sharing(options.folder, scene)) {
@@ -116,11 +117,11 @@ std::size_t RunParts::begin(const RunCut& cut) {
 
 std::vector<std::size_t> RunParts::missing() {
     std::vector<std::size_t> parts;
-    if (fs::exists(run_file(options_.folder))) return parts;
+    if (is_there(run_file(options_.folder))) return parts;
     for (std::size_t part = 0; part < count_; ++part)
-        if (!fs::exists(part_file(options_.folder, part))) parts.push_back(part);
+        if (!is_there(part_file(options_.folder, part))) parts.push_back(part);
     // .. unless another process has merged all of them in the meantime.
-    if (fs::exists(run_file(options_.folder))) parts.clear();
+    if (is_there(run_file(options_.folder))) parts.clear();
     return parts;
 }
 
@@ -145,7 +146,7 @@ void RunParts::expect_own(std::size_t part) const try {
 }
 
 bool RunParts::is_whole(std::size_t part) const try {
-    if (!fs::exists(part_file(options_.folder, part))) return false;
+    if (!is_there(part_file(options_.folder, part))) return false;
     expect_own(part);
     ResultFile(part_file(options_.folder, part)).expect_whole();
     return true;
@@ -168,15 +169,16 @@ fs::path RunParts::take_work_folder(std::size_t part) const {
     std::random_device random;
     const fs::path mine =
         parts_folder(options_.folder) / fmt::format("{}{:08x}{:08x}", work_prefix(part), random(), random());
-    for (const auto& entry : fs::directory_iterator(parts_folder(options_.folder))) {
-        if (!entry.path().filename().string().starts_with(work_prefix(part))) continue;
+    for (const fs::path& entry : entries_of(parts_folder(options_.folder))) {
+        if (!entry.filename().string().starts_with(work_prefix(part))) continue;
         try {
-            const FolderLock free(entry.path(), FolderLock::Use::alone);
+            const FolderLock free(entry, FolderLock::Use::alone);
             std::error_code gone;
-            fs::rename(entry.path(), mine, gone);
+            fs::rename(entry, mine, gone);
             if (!gone) break;
         } catch (const InputError&) {  // another process is working there
-        } catch (const RunError&) {    // it no longer exists
+        } catch (const RunError&) {
+            if (is_there(entry)) throw;
         }
     }
     return mine;
@@ -187,7 +189,7 @@ RunEnd RunParts::run_part(Device& device, std::size_t part, const fs::path& work
     run.folder = work;
     run.on_progress = [this](double fraction) { on_progress(fraction); };
     const Scene scene = scene_of(part);
-    if (fs::exists(work)) try {
+    if (is_there(work)) try {
             run.start = Start::resume;
             return run_scene(device, scene, run).end;
         } catch (const InputError& error) {
@@ -212,7 +214,7 @@ void RunParts::compute(Device& device, std::size_t part) try {
     move_file(run_file(work), part_file(options_.folder, part));
     fs::remove_all(work);
     // Others may have merged in the meantime.
-    if (fs::exists(run_file(options_.folder))) merge();
+    if (is_there(run_file(options_.folder))) merge();
 } catch (const std::exception&) {
     // Another process may have merged the parts and removed their folder.
     if (!is_merged(options_.folder)) throw;
@@ -246,7 +248,7 @@ bool RunParts::merge_files() try {
 /// Can be repeated safely, by two processes at the same time, and after an interruption anywhere.
 bool RunParts::merge() try {
     if (is_merged(options_.folder)) return true;
-    if (fs::exists(run_file(options_.folder)))
+    if (is_there(run_file(options_.folder)))
         expect_own_merge();
     else if (!missing().empty() || !merge_files())
         return is_merged(options_.folder);

@@ -16,6 +16,7 @@ from typing import Any, Callable
 
 from .command import ask, problems_of, program_path
 from .errors import INTERRUPTED, InputError, RunError
+from .look import is_there
 from .toml import assignments
 
 TRIES = 3  # per part, not counting lost workers
@@ -129,7 +130,7 @@ def client_of(scheduler):
     """Of a Dask scheduler that runs already, by its address or file."""
     import distributed
     try:
-        return distributed.Client(scheduler_file=scheduler) if os.path.exists(scheduler) else distributed.Client(scheduler)
+        return distributed.Client(scheduler_file=scheduler) if is_there(scheduler) else distributed.Client(scheduler)
     except (OSError, TypeError, ValueError) as error:
         raise InputError(f"--scheduler: must be the address or file of a Dask scheduler that answers, got {scheduler}: {error}")
 

@@ -6,6 +6,7 @@ import pathlib
 import secrets
 
 from .errors import InputError
+from .look import is_file, is_there
 
 HEAD = 1 << 16  # bytes of a file by which its kind is recognised
 
@@ -39,12 +40,12 @@ def write_whole(file, content):
 def expect_replaceable(file, what, begins, holds=b""):
     """Raises InputError unless the path is free, or holds an empty file or `what` mcdem wrote, which has these marks in its head."""
     problem = None
-    if os.path.isfile(file):
+    if is_file(file):
         with open(file, "rb") as there:
             head = there.read(HEAD)
         if head and not (head.startswith(begins) and holds in head):
             problem = f"is not {what}"
-    elif os.path.lexists(file):
+    elif is_there(file):
         problem = "exists and is not a regular file"
     if problem:
         raise InputError(f"{file}: {problem}; it is not replaced: give another path (--out), or remove it first")

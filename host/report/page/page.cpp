@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "core/errors.h"
+#include "core/input_file.h"
+#include "core/look.h"
 #include "core/output_file.h"
 #include "core/replaced.h"
 #include "core/sha256.h"
@@ -119,6 +119,7 @@ fs::path own_folder() {
 std::vector<fs::path> folders() {
     if (const char* chosen = std::getenv("MCDEM_SHARE")) return {chosen};
     const auto own = own_folder();
+    if (own.empty()) return {MCDEM_INSTALLED_SHARE};  // no /proc; never the current folder
     return {own / "share/mcdem", own.parent_path() / "share/mcdem", MCDEM_INSTALLED_SHARE};
 }
 
@@ -223,8 +224,7 @@ void write_page(const Page& page, const std::filesystem::path& file) {
 std::string packed_plotting_library() {
     std::string looked;
     for (const auto& folder : folders()) {
-        std::ifstream in(folder / file_name, std::ios::binary);
-        std::string bytes{std::istreambuf_iterator<char>(in), {}};
+        const std::string bytes = is_file(folder / file_name) ? read_file(folder / file_name) : "";
         if (bytes.starts_with("\x1f\x8b")) return bytes;  // magic number of gzip
         looked += (looked.empty() ? "" : ", ") + folder.string();
     }

@@ -276,7 +276,8 @@ void add_origin(Page& page, const RunOrigin& origin) {
     std::vector<std::string> failures;
     for (const auto& recording : run.recordings)
         if (recording.failure)
-            failures.push_back(recording.label + " stopped at " + recording.failure->text());
+            failures.push_back((recording.label.empty() ? "replica 1" : recording.label) + " stopped at " +
+                               recording.failure->text());
     page.list(failures);
     page.folded("The scene, as it was run", run.scene);
 }

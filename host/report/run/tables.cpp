@@ -6,9 +6,9 @@
 #include <cmath>
 #include <functional>
 
+#include "core/csv_text.h"
 #include "core/errors.h"
 #include "core/parameters.h"
-#include "core/replaced.h"
 #include "metrics/law_range.h"
 #include "metrics/programmes.h"
 #include "report/page/labels.h"
@@ -57,9 +57,8 @@ std::string beyond_note(const std::string& setting, const std::string& from, con
 
 /// Quotes the text if necessary.
 std::string csv_field(const std::string& text) {
-    const auto line = one_line(text);
-    if (line.find_first_of(",\"") == std::string::npos) return line;
-    return "\"" + replaced(line, {{'"', "\"\""}}) + "\"";
+    const auto line = without_formula(one_line(text));
+    return line.find_first_of(",\"") == std::string::npos ? line : csv_cell(line);
 }
 
 std::string begin_row(const std::string& setting, const std::vector<std::string>& cells) {

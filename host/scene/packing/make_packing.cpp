@@ -68,7 +68,8 @@ void expect_room(const Replica& replica, const Packing& packing) {
                         static_cast<double>(packing.size());
     if (const auto small = too_small_container(smallest_cell(replica), replica.numerics, mean,
                                                *std::ranges::max_element(packing.diameter)))
-        throw InputError(fmt::format("{} {} ({})", small->key, small->what, replica.label));
+        throw InputError(fmt::format("{} {}{}", small->key, small->what,
+                                     replica.label.empty() ? "" : fmt::format(" ({})", replica.label)));
 }
 
 void apply_jitter(Packing& packing, double sd, std::uint64_t seed) {

@@ -7,6 +7,7 @@
 
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/look.h"
 #include "scene/packing/packing_fields.h"
 #include "scene/packing/table.h"
 
@@ -300,14 +301,13 @@ Packing read_csv_packing(const std::string& text, const std::string& source, std
 }
 
 Packing read_packing(const std::filesystem::path& file, std::optional<long> frame) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error))
+    if (!is_there(file))
         throw InputError(fmt::format("{}: must be a packing, got no such file", file.string()));
-    if (!std::filesystem::is_regular_file(file, error))
+    if (!is_file(file))
         throw InputError(
             fmt::format("{}: must be a packing, got something that is not a file", file.string()));
     constexpr std::uintmax_t largest_file = std::uintmax_t{2} << 30;
-    if (std::filesystem::file_size(file, error) > largest_file)
+    if (size_of_file(file) > largest_file)
         throw InputError(fmt::format("{}: must be a packing of at most 2 GiB, got more", file.string()));
     const std::string text = read_file(file), source = file.string();
     const std::string_view beginning = std::string_view(text).substr(0, 1 << 16);

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "core/input_file.h"
+#include "core/look.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -72,21 +73,16 @@ std::optional<fs::path> find_table(const fs::path& folder, const std::string& na
                                    FileProblems& problems) {
     const fs::path plain = folder / name, packed = folder / (name + ".gz");
     // Of the link itself: a broken link means that a table is missing.
-    const auto is_there = [](const fs::path& file) {
-        std::error_code error;
-        return fs::exists(fs::symlink_status(file, error));
-    };
-    const bool has_plain = is_there(plain), has_packed = is_there(packed);
+    const bool has_plain = look_at_itself(plain) != At::nothing;
+    const bool has_packed = look_at_itself(packed) != At::nothing;
     if (!has_plain && !has_packed) return std::nullopt;
     const fs::path file = has_plain ? plain : packed;
-    std::error_code error;
-    const bool is_file = fs::is_regular_file(file, error);
-    const auto size = is_file ? fs::file_size(file, error) : 0;
+    const bool can_be_read = is_file(file);
+    const auto size = can_be_read ? size_of_file(file) : 0;
     if (has_plain && has_packed)
         problems.add(plain.string(), "is there twice, plain and as .gz: remove the one that is out of date");
-    else if (error || !is_file)
-        problems.add(file.string(), fmt::format("must be a file that can be read{}{}", error ? ": " : "",
-                                                error ? error.message() : ""));
+    else if (!can_be_read)
+        problems.add(file.string(), "must be a file that can be read");
     else if (size > largest)
         problems.add(file.string(), fmt::format("{} ({} bytes, at most {})", too_large, size, largest));
     else

@@ -5,6 +5,7 @@
 #include "core/container.h"
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/look.h"
 #include "scene/read/list_tables.h"
 #include "scene/read/replicas.h"
 #include "scene/read/scene_checks.h"
@@ -253,13 +254,11 @@ Scene parse_scene(std::string_view toml_text, std::string source_name,
 }
 
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error))
-        throw InputError(fmt::format(
-            "{}: must be a scene, got {}", file.string(),
-            std::filesystem::exists(file, error) ? "something that is not a file" : "no such file"));
+    if (!is_file(file))
+        throw InputError(fmt::format("{}: must be a scene, got {}", file.string(),
+                                     is_there(file) ? "something that is not a file" : "no such file"));
     constexpr std::uintmax_t largest_file = 1 << 20;
-    if (std::filesystem::file_size(file, error) > largest_file)
+    if (size_of_file(file) > largest_file)
         throw InputError(
             fmt::format("{}: a scene must be at most {} bytes long", file.string(), largest_file));
     return parse_scene(read_file(file), file.string(), overrides);

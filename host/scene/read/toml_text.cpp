@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "scene/read/problems.h"
 
@@ -74,13 +76,70 @@ private:
     }
 };
 
+/// The position after the string that begins here; of a text that is no TOML, any position after this one.
+std::size_t end_of_string(std::string_view text, std::size_t first) {
+    const char quote = text[first];
+    const bool is_long = text.substr(first, 3) == std::string(3, quote);
+    for (std::size_t at = first + (is_long ? 3 : 1); at < text.size(); ++at) {
+        if (quote == '"' && text[at] == '\\')
+            ++at;
+        else if (!is_long && (text[at] == quote || text[at] == '\n'))
+            return at + 1;
+        else if (is_long && text.substr(at, 3) == std::string(3, quote)) {
+            at += 3;
+            for (int more = 0; more < 2 && at < text.size() && text[at] == quote; ++more)
+                ++at;  // of the content
+            return at;
+        }
+    }
+    return text.size();
+}
+
+/// Throws toml::parse_error if names and values are nested so deeply that the recursive parser, or the
+/// destructor of what it made, could overflow the stack. Counts the parts of dotted names and open brackets
+/// of the text up to its first syntax error.
+void expect_shallow(std::string_view text) {
+    constexpr std::size_t deepest = 100;
+    std::vector<std::size_t> outside;  // depth outside each open bracket
+    std::size_t depth = 0, dots = 0, dots_of_key = 0;
+    toml::source_index line = 1;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const char sign = text[at];
+        if (sign == '"' || sign == '\'') {
+            const std::size_t end = end_of_string(text, at);
+            line += static_cast<toml::source_index>(std::ranges::count(text.substr(at, end - at), '\n'));
+            at = end - 1;
+        } else if (sign == '#') {
+            at = std::min(text.find('\n', at), text.size()) - 1;
+        } else if (sign == '.') {
+            ++dots;
+        } else if (sign == '=') {
+            dots_of_key = std::exchange(dots, 0);
+        } else if (sign == '[' || sign == '{') {
+            outside.push_back(depth);
+            depth += std::exchange(dots_of_key, 0) + 1;
+            dots = 0;
+        } else if ((sign == ']' || sign == '}') && !outside.empty()) {
+            depth = outside.back();
+            outside.pop_back();
+            dots = 0;
+        } else if (sign == ',' || sign == '\n') {
+            dots = dots_of_key = 0;
+            line += sign == '\n' ? 1 : 0;
+        }
+        if (depth + dots >= deepest)
+            throw toml::parse_error(
+                fmt::format("names must have at most {} parts, and values must be nested at most {} deep",
+                            deepest, deepest)
+                    .c_str(),
+                toml::source_position{line, 1});
+    }
+}
+
 }  // namespace
 
 toml::table parse_toml(std::string_view text, std::string_view source) {
-    constexpr std::ptrdiff_t max_dots = 50'000;
-    if (const auto dots = std::ranges::count(text, '.'); dots > max_dots)
-        throw toml::parse_error(fmt::format("must have at most {} dots, got {}", max_dots, dots).c_str(),
-                                toml::source_position{1, 1});
+    expect_shallow(text);
     return toml::parse(text, source);
 }
 

@@ -10,8 +10,9 @@
 
 namespace mcdem::inline scene {
 
-/// toml::parse, which also throws toml::parse_error if the text has more than 50,000 dots: the parser is
-/// recursive in the parts of a dotted name, so a few hundred thousand would overflow the stack.
+/// toml::parse, which also throws toml::parse_error if a name has more than 100 parts, or names, tables and
+/// lists are nested more than 100 deep: parser and destructor are recursive, so some ten thousand overflow
+/// the stack.
 toml::table parse_toml(std::string_view text, std::string_view source = {});
 
 /// A table with the single key "value"; nothing if the text is not a value of TOML.

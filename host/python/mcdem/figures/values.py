@@ -2,15 +2,17 @@
 import json
 import pathlib
 
+from ..look import is_folder, is_there
+
 FORMAT = 1
 
 
 def read(source, name=None):
     """Values of the figure `name`; without a name, of all figures in the folder or file."""
     file = pathlib.Path(source)
-    if file.is_dir():
+    if is_folder(file):
         file = file / "figures.json"
-    if not file.exists():
+    if not is_there(file):
         raise FileNotFoundError(f"{file}: is not there; `mcdem figures RUN --out {file.parent}` writes it for a run, "
                                 "`mcdem diagnose`, `converge` and `challenge score` write it beside their results")
     values = json.loads(file.read_text(encoding="utf-8"))

@@ -11,6 +11,7 @@ import textwrap
 
 from ..errors import InputError
 from ..files import write_whole
+from ..look import is_there
 from .assemble import Known, import_tables, write_tables
 from .guess import guess_tables, mapping_of, read_import_tables, wrong_rows
 from .mapping import KEYS, mapping_text, unclear_entries
@@ -36,7 +37,7 @@ def print_mapping(mapping):
 
 def expect_kept(kept, text):
     """Raises an error if another mapping exists; the same one, edited by the user, may."""
-    if not os.path.lexists(kept):
+    if not is_there(kept):
         return
     there = text_of_mapping(kept)
     try:
@@ -61,7 +62,7 @@ def main():
         tables = read_import_tables(parse_mapping(text, given), files, given)
     elif not files:
         raise InputError("TABLE: must be at least one file, or --mapping must name them, got neither")
-    elif os.path.lexists(kept):
+    elif is_there(kept):
         raise InputError(f"{kept}: is there already: import with --mapping {kept}, or remove it")
     else:
         tables = guess_tables(files, known)

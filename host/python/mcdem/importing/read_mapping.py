@@ -5,6 +5,7 @@ import re
 import tomllib
 
 from ..errors import InputError
+from ..look import is_file, is_there
 from .mapping import BY_DIRECTION, KEYS, WALLS, Guess, Key, MappedTable, find_key, meaning_of, must_be_stated
 from .problems import Problems, quoted, to_number
 from .text import Form
@@ -122,8 +123,8 @@ def parse_mapping(text, file):
 
 
 def text_of_mapping(file):
-    if not os.path.isfile(file) or os.path.getsize(file) > LARGEST:
-        got = "something else" if os.path.lexists(file) else "no such file"
+    if not is_file(file) or os.path.getsize(file) > LARGEST:
+        got = "something else" if is_there(file) else "no such file"
         raise InputError(f"{file}: must be a mapping of at most 1 MB, got {got}")
     try:
         return pathlib.Path(file).read_bytes().decode().replace("\r\n", "\n")

@@ -1,12 +1,12 @@
 """Reads tables of other programs and laboratories as named columns; their meaning and units are determined later."""
 import array
 import gzip
-import os
 import zlib
 
 import numpy as np
 
 from ..errors import InputError
+from ..look import is_file, is_there
 from . import formats
 from .problems import Problems, number_text
 from .text import Form, cut, numbers_of, parse_text
@@ -75,8 +75,8 @@ class Table:
 
 def _bytes_of(file):
     """The file's bytes, decompressed if necessary."""
-    if not os.path.isfile(file):
-        got = "something that is not a file" if os.path.lexists(file) else "no such file"
+    if not is_file(file):
+        got = "something that is not a file" if is_there(file) else "no such file"
         raise InputError(f"{file}: must be a table, got {got}")
     with open(file, "rb") as stream:
         packed = stream.read(2) == b"\x1f\x8b"

@@ -1,0 +1,139 @@
+"""A path that cannot be looked at is an error that names it; an experiment is published whole or not at all.
+
+looking_test.py MCDEM LAYER    (LAYER: the library of failing_files.cpp)
+"""
+import shutil
+import sys
+
+from storage_test import RUN, expect, mcdem, run_tests, whole_run
+
+REASONS = {"EIO": "Input/output error", "ESTALE": "Stale file handle", "EACCES": "Permission denied"}
+# Of a message that takes an error for an answer.
+MISTAKEN = ("no such", "nothing there", "not there", "holds no", "must hold", "is not an experiment", "remove it", "mcdem: :")
+FROM_RUN = ["experiment", "from-run", "out", "--replica", "mc_dem", "--out", "lab"]
+
+
+def measured(place):
+    whole_run(place)
+    expect(mcdem(place, *FROM_RUN), 0)
+
+
+def operations(place, words, kinds, code=0):
+    """The kind and path of each operation of these kinds."""
+    log = place.parent / "log"
+    log.unlink(missing_ok=True)
+    expect(mcdem(place, *words, fault_log=log, fault_kinds=kinds), code)
+    return [line.split(" ", 2)[1:] for line in log.read_text().splitlines()]
+
+
+def check_looks(place, words, outputs=()):
+    """Every failing look ends the command with the reason, or changes nothing of what it prints."""
+    plain = mcdem(place, *words)
+    for output in outputs:
+        shutil.rmtree(place / output)
+    looks = operations(place, words, "stat")
+    assert looks, words
+    for number, (_, path) in enumerate(looks, 1):
+        for fault, reason in REASONS.items():
+            for output in outputs:
+                shutil.rmtree(place / output, ignore_errors=True)
+            done = mcdem(place, *words, fault=fault, fault_at=number, fault_kinds="stat")
+            told = done.stderr + done.stdout
+            if done.returncode != 0 or reason in told:
+                assert done.returncode in (0, 1) and reason in told, (words, path, fault, done)
+                assert path.rsplit("/", 1)[1] in told, (words, path, fault, done)
+                assert not any(words in done.stderr for words in MISTAKEN), (words, path, fault, done)
+            else:
+                assert done.stdout == plain.stdout, (words, path, fault, done)
+
+
+def results_are_looked_for(place):
+    measured(place)
+    for words in (["table", "out"], ["verify", "out"], ["compare", "out", "--against", "out"], [*RUN, "--resume"]):
+        check_looks(place, words)
+
+
+def scenes_and_packings_are_looked_for(place):
+    whole_run(place)
+    (place / "grains.csv").write_text("x_m,y_m,z_m,diameter_m\n0.02,0.02,0.01,0.01\n0.03,0.03,0.01,0.01\n")
+    (place / "file.toml").write_text((place / "tiny.toml").read_text().replace(
+        "count = 12\npacking_fraction = 0.5", 'file = "grains.csv"'))
+    check_looks(place, ["validate", "file.toml"])
+
+
+def experiments_are_looked_for(place):
+    measured(place)
+    for words in (["experiment", "check", "lab"], ["verify", "lab"]):
+        check_looks(place, words)
+
+
+def outputs_are_looked_for(place):
+    whole_run(place)
+    check_looks(place, [*FROM_RUN[:-1], "new"], ["new"])
+    check_looks(place, ["report", "out", "--out", "page.html"])
+    check_looks(place, ["export", "out", "--xyz", "--out", "xyz"], ["xyz"])
+
+
+def tables_are_looked_for_by_python(place):
+    (place / "plate.txt").write_text("z_m force_N\n" + "".join(f"{0.06 - k / 1000} {k}\n" for k in range(9)))
+    check_looks(place, ["experiment", "import", "plate.txt", "--set", "box.size=[0.05,0.05]", "--out", "imp"], ["imp"])
+
+
+def names_in(folder):
+    return {path.name for path in folder.iterdir()} if folder.exists() else set()
+
+
+def check_publishing(place, words, out, whole, before=()):
+    """Each failing step leaves nothing or a whole experiment, and the same command again works. `before`: files in `out` that are
+    not of mcdem."""
+    def prepare():
+        shutil.rmtree(place / out, ignore_errors=True)
+        if before:
+            (place / out).mkdir()
+        for name in before:
+            (place / out / name).write_text("kept\n")
+
+    kinds = "rename,fsync,create,unlink"
+    prepare()
+    steps = operations(place, words, kinds)
+    assert len(steps) > 4 and names_in(place / out) == whole | set(before), (steps, names_in(place / out))
+    for number in range(1, len(steps) + 1):
+        for fault in ("EIO", "KILL"):
+            for abandoned in place.glob("*.tmp"):
+                shutil.rmtree(abandoned)
+            prepare()
+            done = mcdem(place, *words, fault=fault, fault_at=number, fault_kinds=kinds)
+            left = {name for name in names_in(place / out) if not name.endswith(".tmp")} - set(before)
+            seen = (words, steps[number - 1], fault, done.returncode, done.stderr, left)
+            if fault == "EIO":
+                assert left == (whole if done.returncode == 0 else set()), seen
+                assert done.returncode == 0 or "Input/output error" in done.stderr, seen
+            elif not before:
+                assert left in (set(), whole), seen
+            if left != whole:
+                again = mcdem(place, *words)
+                assert again.returncode == 0, (seen, again)
+            assert names_in(place / out) == whole | set(before), (seen, names_in(place / out))
+            assert all((place / out / name).read_text() == "kept\n" for name in before), seen
+            expect(mcdem(place, "verify", out), 0)
+            assert left == whole or not list(place.glob("*.tmp")), seen  # of a kill: removed by the next command there
+
+
+def an_experiment_of_a_run_is_published_at_once(place):
+    whole_run(place)
+    whole = {"contacts.csv", "grains.csv", "plate.csv", "experiment.toml", "SHA256SUMS"}
+    check_publishing(place, FROM_RUN, "lab", whole)
+    check_publishing(place, FROM_RUN, "lab", whole, ["notes.txt", "grains.txt"])
+
+
+def an_import_is_published_at_once(place):
+    (place / "plate.txt").write_text("z_m force_N\n" + "".join(f"{0.06 - k / 1000} {k}\n" for k in range(9)))
+    words = ["experiment", "import", "plate.txt", "--set", "box.size=[0.05,0.05]", "--out", "imp"]
+    whole = {"plate.csv", "experiment.toml", "mapping.toml"}
+    check_publishing(place, words, "imp", whole)
+    check_publishing(place, words, "imp", whole, ["notes.txt"])
+
+
+if __name__ == "__main__":
+    sys.exit(run_tests({name: test for name, test in globals().items()
+                        if name not in ("check_looks", "check_publishing", "measured", "operations")}))
