@@ -10,7 +10,7 @@ import tempfile
 from .errors import InputError
 
 HEAD = 1 << 16  # bytes of a file by which its kind is recognised
-unfinished = set()  # paths of temporary files and folders
+unfinished: set[str | pathlib.Path] = set()  # paths of temporary files and folders
 
 
 def remove_unfinished():

@@ -16,8 +16,8 @@ if sys.version_info < OLDEST:
                      % (sys.executable, sys.version.split()[0], ".".join(map(str, OLDEST))))
     sys.exit(1)
 
-import os  # noqa: E402
-import site  # noqa: E402
+import os
+import site
 
 
 def named_folders():
