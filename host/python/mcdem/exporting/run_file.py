@@ -25,7 +25,8 @@ def reading(path):
     except FileNotFoundError:
         raise
     except (KeyError, OSError, RuntimeError, TypeError, ValueError) as error:
-        raise RunError(f"{path}: cannot be read: {' '.join(str(error).split())}") from error
+        cause = re.search("error message = '(.*?)'", str(error))  # of HDF5, of a failed system call
+        raise RunError(f"{path}: cannot be read: {cause[1] if cause else ' '.join(str(error).split())}") from error
 
 
 def read_replicas(files):
