@@ -153,8 +153,8 @@ TEST_F(PythonProgramTest, AnErrorThatIsNotExpectedIsOneLine) {
     for (const std::string raised : {"ValueError('odd\\nthing')", "KeyError(3)",
                                      "RecursionError('odd thing')", "AssertionError()", "OSError()"}) {
         EXPECT_EQ(run("raise " + raised + "\n"), 1);
-        EXPECT_THAT(
-            err_, testing::MatchesRegex("mcdem: internal error: [A-Za-z]+ [^\n]*; please report it[^\n]*\n"))
+        EXPECT_THAT(err_,
+                    testing::MatchesRegex("mcdem: internal error: [A-Za-z]+[^\n]*; please report it[^\n]*\n"))
             << raised;
     }
     EXPECT_EQ(run("class Left:\n    def __del__(self):\n        raise ValueError('lost')\nLeft()\n"), 0);
