@@ -30,6 +30,15 @@ std::optional<int> segment_index(const fs::path& file) {
     return index;
 }
 
+/// Whether it may be removed: a result file, not a link or a file of others with such a name.
+bool is_segment(const fs::path& file) {
+    try {
+        return !fs::is_symlink(file) && fs::is_regular_file(file) && (ResultFile(file), true);
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
 bool belongs_to_a_run(const fs::path& file) {
     const std::string name = file.filename().string();
     return name == "run.h5" || name.starts_with("checkpoint.") || segment_index(file) ||
@@ -143,7 +152,13 @@ void ResultFolder::append_segment(const Run& scans_since_last) {
 
 void ResultFolder::drop_segments_from(int index) {
     // The last one first, so that a crash in between leaves no gap.
-    for (; segments_ > index; --segments_) fs::remove(segment_file(folder_, segments_ - 1));
+    for (; segments_ > index; --segments_) {
+        const fs::path file = segment_file(folder_, segments_ - 1);
+        if (!is_segment(file))
+            throw InputError(file.string() +
+                             ": is not a segment of a run, and is not removed: move it elsewhere");
+        fs::remove(file);
+    }
 }
 
 void ResultFolder::expect_whole_segments(const StopWanted& stop_wanted) const {
@@ -167,7 +182,7 @@ void ResultFolder::expect_whole_segments(const StopWanted& stop_wanted) const {
 
 void ResultFolder::remove_segments() {
     for (const fs::path& entry : entries_of(folder_))
-        if (segment_index(entry)) fs::remove(entry);
+        if (segment_index(entry) && is_segment(entry)) fs::remove(entry);
     segments_ = 0;
 }
 

@@ -74,14 +74,96 @@ TEST_F(PythonProgramTest, MissingPartsAreNamed) {
 
 TEST_F(PythonProgramTest, AModuleInTheCurrentFolderIsNotUsed) {
     const fs::path here = fs::current_path();
-    std::ofstream(path("json.py")) << "raise SystemExit('not Python\\'s own')\n";
-    set("PYTHONPATH", "");
     fs::current_path(folder_.path);
-    testing::internal::CaptureStdout();
-    const int exit_code = run_python_module("json.tool", {"--help"});
+    for (const char* name :
+         {"json", "os", "runpy", "signal", "site", "encodings", "sitecustomize", "usercustomize", "argparse"})
+        std::ofstream(path(name + std::string(".py"))) << "raise SystemExit('not Python\\'s own')\n";
+    set("PYTHONINSPECT", "1");
+    set("PYTHONHOME", folder_.path);
+    set("PYTHONUSERBASE", ".");
+    for (const char* folders : {"", ":/opt/x", "/opt/x:", ".", "./", "..:/opt/x::", "~"}) {
+        set("PYTHONPATH", folders);
+        testing::internal::CaptureStdout();
+        const int exit_code = run_python_module("json.tool", {"--help"});
+        EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("usage: ")) << folders;
+        EXPECT_EQ(exit_code, 0) << folders;
+    }
     fs::current_path(here);
-    EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("usage: "));
-    EXPECT_EQ(exit_code, 0);
+}
+
+TEST_F(PythonProgramTest, AnInterpreterInTheCurrentFolderIsNotUsed) {
+    const fs::path here = fs::current_path();
+    std::ofstream(path("my_python")) << "#!/bin/sh\n";
+    fs::permissions(path("my_python"), fs::perms::owner_all);
+    fs::current_path(folder_.path);
+    set("MCDEM_PYTHON", "my_python");
+    for (const std::string relative : {".:/usr/bin", ":/usr/bin", "/usr/bin:"}) {
+        set("PATH", relative);
+        EXPECT_THROW(run_python_module("json.tool", {"--help"}), RunError) << relative;
+    }
+    set("PATH", "/usr/bin:" + folder_.path.string());
+    EXPECT_EQ(run_python_module("json.tool", {"--help"}), 0);
+    fs::current_path(here);
+}
+
+/// Packages installed for the user alone are there, as without isolation, unless others may write them.
+TEST_F(PythonProgramTest, PackagesOfTheUserAreFoundIfTheyAreTheUsers) {
+    EXPECT_EQ(run("import sys\nprint('%d.%d' % sys.version_info[:2])\n"), 0);
+    const std::string version = out_.substr(0, out_.find('\n'));
+    const fs::path packages = path("lib/python" + version + "/site-packages");
+    fs::create_directories(packages);
+    std::ofstream(packages / "of_the_user.py") << "print('found')\n";
+    set("PYTHONUSERBASE", folder_.path);
+    EXPECT_EQ(run("import of_the_user\n"), 0);
+    EXPECT_EQ(out_, "found\n");
+    fs::permissions(packages, fs::perms::all);
+    EXPECT_EQ(run("import of_the_user\n"), 1);
+}
+
+TEST_F(PythonProgramTest, AnOldPythonIsRefused) {
+    std::ofstream(path("fake.py"))
+        << "import sys\nsys.version_info = (3, 10, 2)\nsys.version = '3.10.2 (main)'\n"
+           "file = sys.argv.pop(1)\n"
+           "exec(open(file).read(), {'__name__': '__main__', '__file__': file})\n";
+    std::ofstream(path("old")) << "#!/bin/sh\nshift 3\nexec /usr/bin/python3 " << path("fake.py").string()
+                               << " \"$@\"\n";
+    fs::permissions(path("old"), fs::perms::owner_all);
+    set("MCDEM_PYTHON", path("old"));
+    EXPECT_EQ(run("print('has run')\n"), 1);
+    EXPECT_EQ(out_, "");
+    EXPECT_THAT(err_, AllOf(HasSubstr("is Python 3.10.2, but Python 3.11 or later is needed"),
+                            HasSubstr("MCDEM_PYTHON")));
+}
+
+TEST_F(PythonProgramTest, ControlCharactersDoNotReachTheTerminal) {
+    EXPECT_EQ(
+        run("import sys\n"
+            "from mcdem.errors import InputError\n"
+            "name = 'a\\x1b]0;b\\x07\\r\\x7f\\x9b2J\\u202ec\\u2066\\u2028d\\udc9b\\u061c\\te\\u00e9\\udce9'\n"
+            "print(name)\n"
+            "sys.stdout.writelines([name])\n"
+            "raise InputError(name)\n"),
+        2);
+    const std::string shown = "a ]0;b    2J c  d  \te\xc3\xa9\xe9";
+    EXPECT_EQ(out_, shown + "\n" + shown);
+    EXPECT_EQ(err_, "mcdem: " + shown + "\n");
+}
+
+TEST_F(PythonProgramTest, AnErrorThatIsNotExpectedIsOneLine) {
+    for (const std::string raised : {"ValueError('odd\\nthing')", "KeyError(3)",
+                                     "RecursionError('odd thing')", "AssertionError()", "OSError()"}) {
+        EXPECT_EQ(run("raise " + raised + "\n"), 1);
+        EXPECT_THAT(err_,
+                    testing::MatchesRegex("mcdem: internal error: [A-Za-z]+[^\n]*; please report it[^\n]*\n"))
+            << raised;
+    }
+    EXPECT_EQ(run("class Left:\n    def __del__(self):\n        raise ValueError('lost')\nLeft()\n"), 0);
+    EXPECT_EQ(err_, "");
+    EXPECT_EQ(run("import sys\nsys.exit('a reason')\n"), 1);
+    EXPECT_EQ(err_, "mcdem: a reason\n");
+    set("MCDEM_DEBUG", "1");
+    EXPECT_EQ(run("raise KeyError(3)\n"), 1);
+    EXPECT_THAT(err_, HasSubstr("Traceback"));
 }
 
 TEST_F(PythonProgramTest, AnInterruptedCommandCleansUpFirst) {
@@ -92,18 +174,38 @@ TEST_F(PythonProgramTest, AnInterruptedCommandCleansUpFirst) {
             ::kill(::getpid(), signal);
         });
         EXPECT_EQ(run("import pathlib, sys, time\n"
-                      "try:\n"
+                      "from mcdem.files import new_file, temporary_folder\n"
+                      "with new_file(sys.argv[1] + '/result'), temporary_folder() as folder:\n"
+                      "    print(folder, flush=True)\n"
+                      "    (folder / 'kept').touch()\n"
                       "    pathlib.Path(sys.argv[1], 'started').touch()\n"
                       "    while True:\n"
-                      "        time.sleep(1)\n"
-                      "finally:\n"
-                      "    pathlib.Path(sys.argv[1], f'order{sys.argv[2]}').touch()\n",
-                      {folder_.path.string(), std::to_string(signal)}),
+                      "        time.sleep(1)\n",
+                      {folder_.path.string()}),
                   130);
         user.join();
         EXPECT_EQ(err_, "");
-        EXPECT_TRUE(fs::exists(path("order" + std::to_string(signal))));
+        EXPECT_FALSE(fs::exists(out_.substr(0, out_.find('\n')))) << out_;
+        for (const auto& entry : fs::directory_iterator(folder_.path))
+            EXPECT_EQ(entry.path().filename().string().find("result"), std::string::npos) << entry.path();
     }
+}
+
+/// Also in the middle of an import, where an exception would become another one, at any moment of the start.
+TEST_F(PythonProgramTest, AnInterruptedImportIsCalledInterrupted) {
+    std::ofstream(path("slow.py")) << "import pathlib, sys, time\n"
+                                      "pathlib.Path(sys.argv[1], 'started').touch()\n"
+                                      "try:\n"
+                                      "    time.sleep(60)\n"
+                                      "except BaseException:\n"
+                                      "    raise ImportError('half loaded') from None\n";
+    std::thread user([&] {
+        while (!fs::exists(path("started"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        ::kill(::getpid(), SIGINT);
+    });
+    EXPECT_EQ(run("import slow\n", {folder_.path.string()}), 130);
+    user.join();
+    EXPECT_EQ(err_, "");
 }
 
 }  // namespace

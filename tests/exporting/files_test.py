@@ -1,10 +1,14 @@
 """Exports: extended XYZ, names and guides, and files that are there already."""
+import errno
 import resource
 import unittest
+import unittest.mock
 
 import case
 from case import FIRST, SECOND
-from synthetic import make_run, write_run
+from synthetic import h5py, make_run, write_run
+
+from mcdem.errors import RunError
 
 
 class Xyz(case.Case):
@@ -93,6 +97,23 @@ class Writing(case.Case):
         with self.assertRaisesRegex(OSError, f"File too large.*{FIRST}"):
             case.exporting.export([file], self.view, [case.xyz])
         self.assertEqual([file.name for file in self.view.iterdir()], ["OVITO.txt"])
+
+    def test_a_damaged_run_is_an_error_that_names_it(self):
+        """What h5py raises of a file in which something is missing or cannot be read."""
+        file = write_run(self.folder / "run.h5", make_run(scans=4))
+        for lost in ("contacts/replica_00000/offset", "observables/replica_00000", "particles/replica_00000/position/value", "parameters"):
+            whole = file.read_bytes()
+            with h5py.File(file, "a") as run:
+                del run[lost]
+            for form in (case.vtk, case.xyz):
+                with self.assertRaisesRegex(RunError, f"{file}: cannot be read: "):
+                    case.exporting.export([file], self.view, [form])
+            file.write_bytes(whole)
+
+    def test_file_systems_without_locks(self):
+        for error in (errno.ENOLCK, 524, errno.EOPNOTSUPP):
+            with unittest.mock.patch("fcntl.flock", side_effect=OSError(error, "no locks")):
+                self.assertEqual(self.export(make_run(), case.xyz), 2)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,6 @@
 """Exports for ParaView: the contents of the files."""
+import contextlib
+import io
 import pathlib
 import unittest
 
@@ -117,6 +119,32 @@ class Grains(case.Case):
         self.assertTrue(close(self.points("grains", scan=1)["displacement"], moved))
         self.assertEqual(self.grid("walls", scan=1)["FieldData/shear_xz"], [0.9])
 
+    def test_displacements_in_a_cell_are_added_from_scan_to_scan(self):
+        """A grain that goes through the cell three times while that is sheared there and back; a scan without positions in between."""
+        run = make_run(scans=13)
+        run[0].shape, run[0].edges = "cell", [0.1, 0.1, 0.1]
+        step = np.array([0.02, 0.01, -0.025])
+        at, before = np.full((GRAINS, 3), 0.05), np.eye(3)
+        for number, scan in enumerate(run[0].scans):
+            scan.row["strain"][4] = 0.2 * min(number, 12 - number)
+            x, y, z, xy, xz, yz = scan.row["strain"]
+            cell = np.array([[1 - x, xy, xz], [0, 1 - y, yz], [0, 0, 1 - z]])
+            at = at @ (cell @ np.linalg.inv(before)).T + step * (number > 0)
+            before = cell
+            for axis in (2, 1, 0):  # into the cell
+                at = at - np.floor(at[:, axis] / (0.1 * cell[axis, axis]))[:, None] * 0.1 * cell[:, axis]
+            scan.position = at
+        self.export(run, case.vtk)
+        self.assertTrue(close(self.points("grains", scan=12)["displacement"], 12 * step))
+        self.export(run, case.vtk, scans=[11])  # of which other scans are exported does not matter
+        self.assertTrue(close(self.points("grains", scan=11)["displacement"], 11 * step))
+        self.assertTrue(close(self.points("grains", scan=11)["displacement_since_last_scan"], step))
+        run[0].scans[12].row["strain"][4] = run[0].scans[10].row["strain"][4]  # the same cell, one scan not recorded
+        run[0].scans[11].position = run[0].scans[11].rotation = None
+        run[0].scans[12].position = run[0].scans[10].position + 2 * step * [1, 1, -1]
+        self.export(run, case.vtk, scans=[12])
+        self.assertTrue(close(self.points("grains", scan=12)["displacement"], 10 * step + 2 * step * [1, 1, -1]))
+
     def two_grains(self, shape, position, contacts):
         """Grains of which the first two have contacts."""
         run = make_run()
@@ -219,6 +247,36 @@ class Files(case.Case):
             pathlib.Path(there / name).write_text("something else")
             self.export(make_run(scans=2), case.vtk)
             self.assertTrue((there / name).exists(), name)
+
+    def test_those_of_others_are_kept_and_told(self):
+        """Of another program, of another kind, links, and all in a folder that is a link."""
+        self.export(make_run(2, 2), case.vtk)
+        there, elsewhere = self.view / FIRST, self.folder / "measured"
+        (there / "grains_99.hdf").write_text("my measurement")
+        (there / "contacts_98.hdf").mkdir()
+        with h5py.File(there / "walls_97.hdf", "w") as file:  # a grid of another program
+            file.create_group("VTKHDF").attrs["Version"] = [2, 0]
+        (self.view / SECOND).rename(elsewhere)
+        (self.view / SECOND).symlink_to(elsewhere)
+        (there / "forces_96.hdf").symlink_to(elsewhere / "forces_000001.hdf")
+        kept = {there / name for name in ("grains_99.hdf", "contacts_98.hdf", "walls_97.hdf", "forces_96.hdf")}
+        kept |= set((self.view / SECOND).glob("*_000001.hdf"))
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            self.export(make_run(2, 1), case.vtk)
+        self.assertEqual({file for file in kept if file.exists()}, kept)
+        self.assertEqual({line.split(": ")[1] for line in said.getvalue().splitlines()}, set(map(str, kept)))
+        self.assertEqual({file.name for file in there.glob("*_000001.hdf")}, set())
+
+    def test_a_grid_of_another_program_is_not_replaced(self):
+        (self.view / FIRST).mkdir()
+        file = self.view / FIRST / "grains_000000.hdf"
+        with h5py.File(file, "w") as grid:
+            grid.create_group("VTKHDF").attrs["Version"] = [1, 0]
+            grid["VTKHDF/Points"] = np.zeros((5, 3))
+        before = file.read_bytes()
+        with self.assertRaisesRegex(ValueError, "grains_000000.hdf: is not an export; it is not replaced"):
+            self.export(make_run(), case.vtk)
+        self.assertEqual(file.read_bytes(), before)
 
     def test_only_those_of_selected_scans_are_written(self):
         self.assertEqual(self.export(make_run(2, 4), case.vtk, replicas=[1], scans=[1, 3]), 8)

@@ -15,7 +15,16 @@ from programs_test import vtk_of_interactions, vtk_of_spheres
 
 ROUNDS = int(sys.argv.pop()) if len(sys.argv) > 1 and sys.argv[-1].isdigit() else 150
 SPICE = [b"nan", b"-1", b"1e308", b"-1e308", b"1e-320", b"999999999999999999999", b"?", b"\xff", b"\x00", b"\n", b";", b",", b"\t", b'"', b"",
-         b" ", b"ITEM: ", b"# ", b"0", b"2147483648", b"[[table]]", b"= ", b"z", b"_", b"\xe2\x80\xa8", b"\x0c", b"voxel", b"frame", b"-"]
+         b" ", b"ITEM: ", b"# ", b"0", b"2147483648", b"[[table]]", b"= ", b"z", b"_", b"\xe2\x80\xa8", b"\x0c", b"voxel", b"frame", b"-",
+         b"\n\x0c\n", b"\n\xc2\xa0\n", b"\x1c", b"\x85", b"inf", b"frame=nan", b"frame=-1e400", b"3" * 30_000, b"[1 2]", b"\x1b]0;a\x07"]
+
+
+def xyz_of_grains(truth):
+    frames = []
+    for scan in truth.scans:
+        rows = "".join(f"X {x} {y} {z} {d / 2}\n" for (x, y, z), d in zip(scan.position, truth.diameter))
+        frames.append(f"{len(truth.diameter)}\nProperties=species:S:1:pos:R:3:radius:R:1 frame={scan.frame}\n{rows}")
+    return "".join(frames)
 
 
 def mutated(text, draw):
@@ -68,6 +77,8 @@ class Hostile(ImportCase):
             {"plate.csv": plain_plate(self.truth, ",", ""), "s_0.vtk": vtk_of_spheres(self.truth, scan), "i_0.vtk": vtk_of_interactions(scan)},
             {"plate.csv": plain_plate(self.truth, ",", "frame", 1), "a.csv": "label,centroid-0,centroid-1,centroid-2\n" + "".join(
                 f"{i},{z},{y},{x}\n" for i, (x, y, z) in enumerate(400 * scan.position))},
+            {"plate.csv": plain_plate(self.truth, ",", "frame", 1), "g.xyz": xyz_of_grains(self.truth)},
+            {"plate.txt": plain_plate(self.truth, ",", "frame", 1).replace(",", " "), "g.txt": lab_grains(self.truth, plain).replace(",", "  ")},
         ]
 
     def expect_positions(self, error):

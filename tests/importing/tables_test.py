@@ -102,6 +102,20 @@ class Text(Tables):
         self.assertEqual(table("#format id_x_y_z_r_matId\n7\t1\t2\t3\t0.5\t0\n").columns, ["id", "x", "y", "z", "r", "matId"])
         self.assertEqual(table("#format x_y_z_r_attrs\n# x y z r dist v_x\n1\t2\t3\t0.5\t9\t8\n").columns, ["x", "y", "z", "r", "dist", "v_x"])
 
+    def test_lines_of_any_blanks_are_no_rows(self):
+        for blank in ("\f", "\v", "\x1c", "\u00a0", "\u2028", "\u3000", "\x85 "):
+            for separator in (" ", ",", "\t"):
+                text = f"x,F\n{blank}\n1.5,2\n{blank}\n2.5,-4\n{blank}\n".replace(",", separator)
+                self.expect_table(text, ["x", "F"])
+
+    def test_a_long_cell_is_an_error_with_its_line(self):
+        """Its length does not matter for the time: 60 digits of a cell that is no number took as long as the whole table."""
+        rows = "x,F\n1.5,2\n2.5,-4\n"
+        self.assertEqual(values(table(rows + "1" * 10_000 + ",1\n"))[2][1], 1)
+        for cell in ("1" * 5_000_000 + "x", "1." + "1" * 5_000_000 + "e"):
+            self.expect_one(self.problems(rows + f"3,{cell}\n"), "t:4: column 2 must have at most 10000 characters, got \"")
+        self.expect_one(self.problems("x," + "F" * 20_000 + "\n1,2\n"), "t:1: column 2 must have at most 10000 characters, got \"FF")
+
 
 class Dump(Tables):
     def test_has_frames_of_rows(self):
@@ -180,6 +194,17 @@ class Vtk(Tables):
             self.assertEqual(values(read)[1], [4, 5, 6, 0.6, 0, 0, 2])
         with open(self.path("grid.vtu"), "rb") as whole:
             self.expect_one(self.problems(whole.read()[:300]), "t: must be a VTK file that meshio reads")
+        for kind in ("PolyData", "ImageData"):  # for which meshio ends the program
+            self.expect_one(self.problems(f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="0.1"></VTKFile>'),
+                            f't: must be an UnstructuredGrid (.vtu), got "{kind}": save it in ParaView as')
+        self.expect_one(self.problems('<VTKFile type="UnstructuredGrid" version="9.7"></VTKFile>'),
+                        "t: must be a VTK file that meshio reads, got: \"Unknown VTU file version '9.7'")
+
+    def test_a_frame_of_xyz_has_a_finite_number(self):
+        frame = 'Properties=species:S:1:pos:R:3:radius:R:1 frame='
+        for number in ("nan", "inf", "-inf"):
+            self.expect_one(self.problems(f"2\n{frame}{number}\nH 0 0 0 1\nH 0 0 1 1\n"),
+                            f"t: must be extended xyz that ASE reads, got: \"the step of a frame must be a finite number, got {number}")
 
 
 class Packed(Tables):

@@ -102,6 +102,24 @@ TEST(result_folder, an_interrupted_finish_is_completed_by_resuming) {
     EXPECT_FALSE(std::filesystem::exists(place / "out/segment-000000.h5"));
 }
 
+/// Files of others that are called like segments, and links.
+TEST(result_folder, removes_only_segments) {
+    TemporaryFolder place;
+    { ResultFolder::create(place / "out").append_segment(synthetic_run()); }
+    write_bytes(place / "out/segment-000001.h5", "my measurement");
+    {
+        auto folder = ResultFolder::open_for_resume(place / "out");
+        EXPECT_THAT(message_of([&] { folder.drop_segments_from(0); }),
+                    HasSubstr("segment-000001.h5: is not a segment of a run, and is not removed"));
+    }
+    std::filesystem::create_symlink(place / "out/segment-000000.h5", place / "out/segment-000002.h5");
+    write_run(place / "out/run.h5", synthetic_run());
+    ResultFolder::open_for_resume(place / "out");
+    EXPECT_FALSE(std::filesystem::exists(place / "out/segment-000000.h5"));
+    EXPECT_TRUE(std::filesystem::exists(place / "out/segment-000001.h5"));
+    EXPECT_TRUE(std::filesystem::is_symlink(place / "out/segment-000002.h5"));
+}
+
 TEST(result_folder, refuses_to_mix_runs) {
     TemporaryFolder place;
     const auto run = synthetic_run();

@@ -1,12 +1,11 @@
-"""Runs and challenges with Dask: on a local cluster whose workers are killed, and with a client of the user. The
-results have the bytes of a single process.
+"""Runs and challenges by `mcdem distribute`: on the devices of this machine, where parts are killed and nothing listens, by a
+Dask scheduler with TLS, and with a client of the user. The results have the bytes of a single process.
 
 dask_test.py MCDEM DEVICE_LAYER; skipped (77) without python3-distributed; uses the Python that has it.
 """
+import json
 import os
 import pathlib
-import signal
-import subprocess
 import sys
 
 import shared_challenge
@@ -43,22 +42,24 @@ def parent_of(process):
     return int(pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
 
 
-def kill_a_worker(hold):
-    """kill -9 of the Dask worker whose part is blocked; the worker's child process then receives SIGTERM."""
-    held = hold.wait_for(1)[0]
-    os.kill(parent_of(held), signal.SIGKILL)
-    shared_runs.wait_until(lambda: shared_runs.is_told_to_end(held), "the part of the killed worker to be told")
-    hold.end()
+def sockets_of(process):
+    """Of the process: inodes of what it has open as sockets."""
+    links = [os.readlink(file) for file in pathlib.Path(f"/proc/{process}/fd").iterdir() if file.is_symlink()]
+    return [link for link in links if link.startswith("socket:")]
 
 
-def outlives_a_killed_worker(place):
-    """The part of the killed worker is computed by another; the address of the dashboard is printed."""
+def outlives_a_killed_part(place):
+    """It is computed again. The command listens nowhere: it has no socket at all."""
     place.run_alone()
     hold = Hold(place, only_one=True)
     process = distribute(place, [*command_of("sweep.toml", "dask"), *PARTS], hold, TWO_DEVICES)
-    kill_a_worker(hold)
+    held = hold.wait_for(1)[0]
+    for one in (process.pid, parent_of(held), held):
+        assert not sockets_of(one), (one, sockets_of(one))
+    hold.kill_one()
+    hold.end()
     said = finish(process)
-    assert "8 of 8 replicas done" in said and "dashboard: http" in said, said
+    assert "8 of 8 replicas done" in said and "dashboard" not in said, said
     place.expect_like_alone("dask")
     assert "8 of 8 replicas done" in finish(distribute(place, command_of("sweep.toml", "dask")))
 
@@ -88,6 +89,31 @@ def goes_on_after_an_interruption(place):
     place.expect_like_alone("dask")
 
 
+def uses_a_scheduler_with_tls(place):
+    """Named by its address; certificates come from Dask's configuration. Whoever has none is refused."""
+    place.run_alone()
+    key, certificate = place.path / "key.pem", place.path / "certificate.pem"
+    place.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-subj", "/CN=mcdem", "-keyout", str(key),
+               "-out", str(certificate)])
+    tls = {"DASK_DISTRIBUTED__COMM__TLS__CA_FILE": str(certificate)}
+    for who in ("SCHEDULER", "WORKER", "CLIENT"):
+        tls |= {f"DASK_DISTRIBUTED__COMM__TLS__{who}__CERT": str(certificate), f"DASK_DISTRIBUTED__COMM__TLS__{who}__KEY": str(key)}
+    scheduler = place.start([sys.executable, "-m", "distributed.cli.dask_scheduler", "--protocol", "tls", "--host", "127.0.0.1",
+                             "--port", "0", "--dashboard-address", "127.0.0.1:0", "--scheduler-file", "dask.json"], tls)
+    shared_runs.wait_until((place.path / "dask.json").exists, "the scheduler")
+    address = json.loads((place.path / "dask.json").read_text())["address"]
+    assert address.startswith("tls://"), address
+    worker = place.start([sys.executable, "-m", "distributed.cli.dask_worker", address, "--nthreads", "1", "--no-dashboard"], tls)
+    words = ["--scheduler", address, *command_of("sweep.toml", "dask")]
+    said = finish(distribute(place, words, more={"DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "2s"}), exit_codes=(2,))
+    assert "mcdem: --scheduler: must be" in said and "Traceback" not in said, said
+    assert "8 of 8 replicas done" in finish(distribute(place, words, more=tls))
+    place.expect_like_alone("dask")
+    for process in (worker, scheduler):
+        process.terminate()
+        finish(process, exit_codes=range(-64, 256))
+
+
 def works_from_python(place):
     """With a client of the user, and without the compiled module."""
     place.run_alone()
@@ -98,11 +124,12 @@ def works_from_python(place):
 
 
 def a_challenge_is_distributed(place):
-    """Library and cases; a worker is killed while the cases are diagnosed."""
+    """Library and cases; a part is killed while the cases are diagnosed."""
     shared_challenge.run_alone(place)
     hold = shared_challenge.hold(place, "dask")
     process = distribute(place, shared_challenge.command_of("dask"), hold)
-    kill_a_worker(hold)
+    hold.kill_one()
+    hold.end()
     finish(process)
     shared_challenge.expect_like_alone(place, "dask")
 
@@ -130,14 +157,15 @@ def says_what_is_wrong(place):
     without = place.path / "python"
     without.write_text(f"#!/bin/sh\nexec {sys.executable} -S \"$@\"\n")
     without.chmod(0o755)
-    said = finish(distribute(place, command_of("sweep.toml", "dask"), more={"MCDEM_PYTHON": str(without)}), exit_codes=(1,))
+    said = finish(distribute(place, ["--scheduler", "tcp://127.0.0.1:1", *command_of("sweep.toml", "dask")],
+                             more={"MCDEM_PYTHON": str(without)}), exit_codes=(1,))
     assert "install python3-distributed" in said, said
 
 
 def main():
-    shared_runs.run_tests([says_what_is_wrong, an_interrupted_merge_is_called_interrupted, outlives_a_killed_worker,
-                           tries_a_failed_part_again, goes_on_after_an_interruption, works_from_python,
-                           a_challenge_is_distributed])
+    shared_runs.run_tests([says_what_is_wrong, an_interrupted_merge_is_called_interrupted, outlives_a_killed_part,
+                           tries_a_failed_part_again, goes_on_after_an_interruption, uses_a_scheduler_with_tls,
+                           works_from_python, a_challenge_is_distributed])
 
 
 main()

@@ -26,25 +26,27 @@ int run(const DistributeCommand& command) {
 }  // namespace
 
 void add_distribute(CLI::App& app, int& exit_code) {
-    auto* sub = app.add_subcommand("distribute", "Compute the parts of a command's work with Dask");
+    auto* sub = app.add_subcommand("distribute", "Compute the parts of a command's work on the devices of this machine, or with Dask");
     auto command = std::make_shared<DistributeCommand>();
     sub->add_option("--scheduler", command->scheduler,
-                    "Address (tcp://..) or file of a running Dask scheduler; default: a scheduler on this "
-                    "machine with one worker per device")
+                    "Address (tls://.., tcp://..) or file of a running Dask scheduler, which needs "
+                    "python3-distributed; default: one process at a time on each device of this machine")
         ->type_name("ADDRESS");
     sub->add_option("--tries", command->tries, "Number of attempts for a part that fails")
         ->check(CLI::Range(1, 100));
     sub->prefix_command();
     sub->footer(
-        "COMMAND is `run`, `challenge run` or `diagnose`, with its options. Its parts become Dask tasks: "
-        "those of a lost\n"
-        "worker are computed again, the dashboard at the printed address shows the progress, and the same "
-        "command\n"
-        "continues with what is missing. The result equals that of one process bit for bit. Needs\n"
-        "python3-distributed. From Python: mcdem.distributed (host/python/README.md).\n"
+        "COMMAND is `run`, `challenge run` or `diagnose`, with its options. Its parts become processes of "
+        "this machine, or\n"
+        "tasks of the Dask scheduler that --scheduler names. A lost part is computed again, and the same "
+        "command continues\n"
+        "with what is missing. The result equals that of one process bit for bit. Everybody who reaches a "
+        "scheduler can run\n"
+        "code on its workers: protect it by TLS (host/ensemble/README.md). From Python: mcdem.distributed "
+        "(host/python/README.md).\n"
         "Examples:\n"
         "  mcdem distribute run scenes/replicas.toml --out out/replicas\n"
-        "  mcdem distribute --scheduler tcp://head:8786 run scenes/replicas.toml --out out/replicas");
+        "  mcdem distribute --scheduler tls://head:8786 run scenes/replicas.toml --out out/replicas");
     sub->callback([command, sub, &exit_code] {
         command->words = sub->remaining();
         exit_code = run(*command);

@@ -1,12 +1,14 @@
 #include "cli/shell/python_program.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 #include <thread>
 
 #include "cli/shell/commands.h"
@@ -20,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int not_started = 126, not_found = 127;              ///< exit codes of env
+constexpr int not_found = 127;                                 ///< exit code of a Subprocess
 constexpr auto check_interval = std::chrono::milliseconds(5);  ///< of whether it has ended
 
 std::string variable(const char* name) {
@@ -28,25 +30,33 @@ std::string variable(const char* name) {
     return value ? value : "";
 }
 
+/// A program in an absolute folder of the search path; elsewhere others may have put one of that name.
+std::string in_search_path(const std::string& name) {
+    std::istringstream folders(variable("PATH"));
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (const fs::path program = fs::path(folder) / name;
+            program.is_absolute() && ::access(program.c_str(), X_OK) == 0)
+            return program.string();
+    return "/usr/bin/" + name;  // named in the message
+}
+
 std::string interpreter() {
     const std::string chosen = variable("MCDEM_PYTHON");
-    if (chosen.find('=') != chosen.npos)
-        throw InputError(fmt::format("MCDEM_PYTHON: must be a path without =, got {}", chosen));
-    if (!chosen.empty()) return chosen;
+    if (!chosen.empty()) return chosen.find('/') == chosen.npos ? in_search_path(chosen) : chosen;
     // In a virtual environment the interpreter next to this program, otherwise the system's.
     for (const fs::path& python : {this_program().parent_path() / "python3", fs::path("/usr/bin/python3")})
         if (::access(python.c_str(), X_OK) == 0) return python.string();
-    return "python3";
+    return in_search_path("python3");
 }
 
-/// The folder of the package `mcdem`.
-fs::path package_folder() {
+/// The file that starts commands (host/python/mcdem/start.py), in the package's folder.
+fs::path start_file() {
     const std::string chosen = variable("MCDEM_PYTHON_FOLDER");
     std::vector<fs::path> folders{chosen};
     if (chosen.empty())
         folders = {this_program().parent_path().parent_path() / "share/mcdem/python", MCDEM_SOURCE_PYTHON};
     for (const fs::path& folder : folders)
-        if (is_there(folder / "mcdem/program.py")) return folder;
+        if (is_there(folder / "mcdem/start.py")) return fs::canonical(folder / "mcdem") / "start.py";
     std::string looked;
     for (const fs::path& folder : folders) looked += (looked.empty() ? "" : " or ") + folder.string();
     throw RunError(
@@ -55,12 +65,29 @@ fs::path package_folder() {
                     looked));
 }
 
+/// Starts it with SIGINT held back until it can clean up (program.py): Python's own handler would print where
+/// it was interrupted.
+Subprocess start(const std::vector<std::string>& words) {
+    sigset_t held, before;
+    sigemptyset(&held);
+    sigaddset(&held, SIGINT);
+    ::pthread_sigmask(SIG_BLOCK, &held, &before);
+    try {
+        Subprocess python(words);
+        ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+        return python;
+    } catch (...) {
+        ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+        throw;
+    }
+}
+
 ProgramEnd end_of(Subprocess python) {
     const Interrupt interrupt;
     for (bool told = false;;) {
         if (const auto end = python.ended()) return *end;
         if (Interrupt::wanted() && !told) {
-            python.send(SIGINT);
+            python.send(SIGTERM);
             told = true;
         }
         std::this_thread::sleep_for(check_interval);
@@ -70,27 +97,20 @@ ProgramEnd end_of(Subprocess python) {
 }  // namespace
 
 int run_python_module(const std::string& module, const std::vector<std::string>& arguments) {
-    const std::string python = interpreter(), others = variable("PYTHONPATH");
-    // A search path with only the package's folder and the user's settings, so that modules in the current
-    // folder are not used.
-    std::vector<std::string> words{
-        "/usr/bin/env",
-        "PYTHONPATH=" + package_folder().string() + (others.empty() ? "" : ":" + others),
-        "PYTHONSAFEPATH=1",
-        "PYTHONDONTWRITEBYTECODE=1",
-        python,
-        "-m",
-        "mcdem.program",
-        module};
+    const std::string python = interpreter();
+    // -E, -s: without PYTHONPATH, PYTHONHOME, .. and the user's packages, from which start.py takes what is
+    // safe. -I would do the same, but Python 2 does not know it and could not say that it is too old. -B:
+    // writes no bytecode beside the package.
+    std::vector<std::string> words{python, "-E", "-s", "-B", start_file().string(), module};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::fflush(stdout);  // otherwise its output would come first
-    const ProgramEnd end = end_of(Subprocess(words));
-    if (end.exit_code == not_started || end.exit_code == not_found)
+    const ProgramEnd end = end_of(start(words));
+    if (end.exit_code == not_found)
         throw RunError(fmt::format(
             "{}: cannot be started: install python3, or name a Python 3 by MCDEM_PYTHON", python));
     if (end.exit_code >= 0) return end.exit_code;
-    if (end.signal == SIGINT || end.signal == SIGTERM) return exit_interrupted;
-    throw RunError(fmt::format("{} -m {}: was ended by signal {}", python, module, end.signal));
+    if (end.signal == SIGINT || end.signal == SIGTERM || end.signal == SIGHUP) return exit_interrupted;
+    throw RunError(fmt::format("{}: was ended by signal {}", python, end.signal));
 }
 
 }  // namespace mcdem::cli

@@ -18,6 +18,21 @@ namespace {
 bool was_terminal = false;
 int output_error = 0;  ///< errno of the first failed write to standard output
 
+/// Bytes of a character in UTF-8 that the text begins with and that does something instead of being shown, or
+/// 0: U+0080 to U+009F, of which some terminals take U+009B for the begin of a command, separators of lines
+/// and paragraphs, and characters that change the direction of the text around them.
+std::size_t hidden_sequence(std::string_view text) {
+    const auto is = [&](std::string_view lead, unsigned char first, unsigned char last) {
+        if (!text.starts_with(lead) || text.size() <= lead.size()) return false;
+        const auto byte = static_cast<unsigned char>(text[lead.size()]);
+        return byte >= first && byte <= last;
+    };
+    if (is("\xc2", 0x80, 0x9f) || is("\xd8", 0x9c, 0x9c)) return 2;
+    const bool is_hidden =
+        is("\xe2\x80", 0x8e, 0x8f) || is("\xe2\x80", 0xa8, 0xae) || is("\xe2\x81", 0xa6, 0xa9);
+    return is_hidden ? 3 : 0;
+}
+
 }  // namespace
 
 void set_up_streams() {
@@ -39,9 +54,8 @@ void blank_control(std::span<char> text) {
         const auto byte = static_cast<unsigned char>(text[i]);
         const bool wanted = byte == '\n' || byte == '\t' || (byte >= 0x20 && byte != 0x7f);
         if (!wanted) text[i] = ' ';
-        // U+0080 to U+009F: some terminals take U+009B for the begin of a command.
-        if (byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0)
-            text[i] = text[i + 1] = ' ';
+        if (const std::size_t size = hidden_sequence({text.data() + i, text.size() - i}))
+            std::fill_n(text.begin() + static_cast<std::ptrdiff_t>(i), size, ' ');
     }
 }
 

@@ -34,6 +34,29 @@ std::string work_prefix(std::size_t part) { return part_name(part) + ".work-"; }
 /// Merged parts before their removal: the folder of the parts is renamed in one step.
 fs::path old_parts(const fs::path& folder) { return folder / "parts.merged"; }
 
+/// Whether a file in the folder of the parts is of this work, by its name.
+bool belongs_to_parts(const fs::path& folder, const fs::path& file) {
+    const std::string name = file.filename().string();
+    const std::size_t digits = std::min(name.find_first_not_of("0123456789"), name.size());
+    const std::string_view ending = std::string_view(name).substr(digits);
+    return file == manifest_file(folder) || file == device_file(folder) ||
+           (digits >= 5 && (ending == ".h5" || ending.starts_with(".work-")));
+}
+
+/// Removes merged parts. Files of others are kept, with their folder, and what is behind a link is not
+/// touched.
+void remove_parts(const fs::path& folder) {
+    std::error_code missing;
+    if (!fs::is_symlink(folder)) {
+        remove_temporaries(folder);
+        std::vector<fs::path> own;
+        for (const auto& entry : fs::directory_iterator(folder, missing))
+            if (belongs_to_parts(folder, entry.path())) own.push_back(entry.path());
+        for (const fs::path& file : own) fs::remove_all(file);
+    }
+    fs::remove(folder, missing);
+}
+
 bool is_merged(const fs::path& folder) {
     return is_there(run_file(folder)) && !is_there(parts_folder(folder));
 }
@@ -97,7 +120,7 @@ bool is_run_in_parts(const fs::path& folder) { return is_there(parts_folder(fold
 RunParts::RunParts(const Scene& scene, const RunOptions& options, const RunCut& cut)
     : scene_(scene), options_(options), lock_(lock_for_sharing(options.folder, scene)) {
     if (is_merged(options.folder)) {
-        fs::remove_all(old_parts(options.folder));
+        remove_parts(old_parts(options.folder));
         remove_temporaries(options.folder);
         return;
     }
@@ -253,9 +276,9 @@ bool RunParts::merge() try {
     else if (!missing().empty() || !merge_files())
         return is_merged(options_.folder);
     write_csv(options_.folder, options_.stop_wanted);
-    fs::remove_all(old_parts(options_.folder));
+    remove_parts(old_parts(options_.folder));
     fs::rename(parts_folder(options_.folder), old_parts(options_.folder));
-    fs::remove_all(old_parts(options_.folder));
+    remove_parts(old_parts(options_.folder));
     // Another process that merges at the same time may still write a file that already exists.
     remove_temporaries(options_.folder);
     return true;

@@ -1,22 +1,27 @@
-"""Computes parts of a run, a challenge or a diagnosis as Dask tasks, on this machine or on any Dask cluster.
+"""Computes parts of a run, a challenge or a diagnosis on the devices of this machine, or as Dask tasks on any Dask cluster.
 
 mcdem.distributed.run("scene.toml", "out/sweep")                           # one process per device of this machine
 mcdem.distributed.run("scene.toml", "out/sweep", client=Client(cluster))   # any cluster: Slurm, PBS, LSF, Kubernetes, ..
 mcdem.distributed.compute(["challenge", "run", ...])                           # any command that works in parts
 
-Each task is a process `mcdem .. --part K`. All machines need the program and the folders under the same paths. If a worker is
-lost, another one computes its part again: parts are bit-identical wherever they are computed.
+Each part is a process `mcdem .. --part K`. On this machine nothing listens for others. With Dask all machines need the program and the
+folders under the same paths. If a process or a worker is lost, its part is computed again: parts are bit-identical wherever they are
+computed.
 """
+import concurrent.futures
 import contextlib
 import os
+import queue
 import shutil
 import subprocess
 import sys
+import threading
 from typing import Any, Callable
 
 from .command import ask, problems_of, program_path
 from .errors import INTERRUPTED, InputError, RunError
 from .look import is_there
+from .program import raise_when_interrupted
 from .toml import assignments
 
 TRIES = 3  # per part, not counting lost workers
@@ -37,24 +42,14 @@ def compute(words: list[str], *, client: Any = None, folder: str | os.PathLike[s
             report: Callable[[str], None] | None = None) -> None:
     """Computes the missing parts of a command and merges them. Calling it again continues where it stopped.
 
-    `words`: the command line after `mcdem`. `client`: a distributed.Client; default: a local cluster with one worker
-    per device. `folder`: working folder of the command. Raises InputError and RunError.
+    `words`: the command line after `mcdem`. `client`: a distributed.Client; default: one process at a time on each
+    device of this machine. `folder`: working folder of the command. Raises InputError and RunError.
     """
     report = report or (lambda line: print(f"mcdem: {line}", file=sys.stderr, flush=True))
-    work = Work([program_path(), *words], os.path.abspath(folder or "."), tries, report)
-    with contextlib.ExitStack() as stack:
-        client = client or stack.enter_context(local_client(work))
+    folder = os.path.abspath(folder or ".")
+    if client:
         report(f"dashboard: {client.dashboard_link}")
-        work.compute(client)
-
-
-@contextlib.contextmanager
-def local_client(work):
-    """A client of workers 0, 1, ..; the name is the index of the worker's device."""
-    from distributed import Client, LocalCluster
-    devices = ask(["devices", "--alike"], work.folder).split()
-    with LocalCluster(n_workers=len(devices), threads_per_worker=1, processes=True) as cluster, Client(cluster) as client:
-        yield client
+    Work([program_path(), *words], folder, tries, report).compute(DaskWorkers(client) if client else LocalDevices(folder))
 
 
 class Work:
@@ -64,10 +59,10 @@ class Work:
     def missing(self, workers):
         return [int(part) for part in ask([*self.command[1:], "--missing", "--workers", str(workers)], self.folder).split()]
 
-    def compute(self, client):
+    def compute(self, workers):
         before = None
         while True:
-            missing = self.missing(max(1, len(client.scheduler_info()["workers"])))
+            missing = self.missing(max(1, workers.count()))
             if not missing:
                 code = subprocess.run([*self.command, "--merge"], cwd=self.folder).returncode
                 if code == 0:
@@ -79,44 +74,107 @@ class Work:
                     raise RunError(f"the parts could not be merged: exit code {code}")
             if missing == before:
                 raise RunError("no part could be finished: fix the errors above first")
-            self.submit(client, missing)
+            self.compute_parts(workers, missing)
             before = missing
 
-    def submit(self, client, parts):
-        """One task per part; waits for all. Raises InputError if the program refuses its input."""
-        from distributed import as_completed
-        futures = {client.submit(compute_part, self.command, self.folder, part, key=f"part-{part}-{os.urandom(4).hex()}",
-                                 retries=self.tries - 1, pure=False): part for part in parts}
-        try:
-            for done, future in enumerate(as_completed(futures), 1):
-                part = futures[future]
-                if future.status != "finished":
-                    self.report(f"part {part}: {future.exception()}")
+    def compute_parts(self, workers, parts):
+        """Waits for all. Raises InputError if the program refuses its input."""
+        with contextlib.closing(workers.outcomes(self, parts)) as outcomes:
+            for done, (part, future) in enumerate(outcomes, 1):
+                if error := future.exception():
+                    self.report(f"part {part}: {error}")
                 elif future.result():
                     raise InputError(problems_of(future.result()))
                 else:
                     self.report(f"part {part}: {done} of {len(parts)}")
+
+
+class LocalDevices:
+    """Computes one part at a time on each device of this machine."""
+
+    def __init__(self, folder):
+        self.devices = ask(["devices", "--alike"], folder).split()
+
+    def count(self):
+        return len(self.devices)
+
+    def outcomes(self, work, parts):
+        """Yields each part with its future when that is done."""
+        self.free, self.running, self.is_ended = queue.SimpleQueue(), set(), threading.Event()
+        for device in self.devices:
+            self.free.put(device)
+        with concurrent.futures.ThreadPoolExecutor(len(self.devices)) as pool:
+            futures = {pool.submit(self.compute, work, part): part for part in parts}
+            try:
+                for future in concurrent.futures.as_completed(futures):
+                    yield futures[future], future
+            finally:
+                self.is_ended.set()
+                pool.shutdown(wait=False, cancel_futures=True)
+                for process in list(self.running):
+                    process.terminate()
+
+    def compute(self, work, part):
+        """As compute_part, with several tries."""
+        device = self.free.get()
+        try:
+            for more in reversed(range(work.tries)):
+                try:
+                    return compute_part(work.command, work.folder, part, device, self.started)
+                except RuntimeError:
+                    if not more or self.is_ended.is_set():
+                        raise
         finally:
-            client.cancel(list(futures))
+            self.free.put(device)
+
+    def started(self, process):
+        self.running.add(process)
+        if self.is_ended.is_set():
+            process.terminate()
 
 
-def compute_part(command, folder, part):
-    """The task. Returns None, or the reason why the program refuses its input. Raises RuntimeError after a failure, for another try."""
-    from distributed import get_worker
-    words = [*command, "--part", str(part)]
-    place = get_worker().name
-    if isinstance(place, int):  # a cluster with one worker per device
-        devices = subprocess.run([command[0], "devices", "--alike"], capture_output=True, text=True).stdout.split()
-        if devices:
-            words += ["--device", devices[place % len(devices)]]
-    if shutil.which("setpriv"):  # ends the process with its worker
+class DaskWorkers:
+    def __init__(self, client):
+        self.client = client
+
+    def count(self):
+        return len(self.client.scheduler_info()["workers"])
+
+    def outcomes(self, work, parts):
+        """One task per part; yields each part with its future when that is done."""
+        from distributed import as_completed
+        futures = {self.client.submit(compute_task, work.command, work.folder, part, key=f"part-{part}-{os.urandom(4).hex()}",
+                                      retries=work.tries - 1, pure=False): part for part in parts}
+        try:
+            for future in as_completed(futures):
+                yield futures[future], future
+        finally:
+            self.client.cancel(list(futures))
+
+
+def compute_part(command, folder, part, device="", started=lambda process: None):
+    """Returns None, or the reason why the program refuses its input. Raises RuntimeError after a failure, for another try."""
+    words = [*command, "--part", str(part)] + (["--device", device] if device else [])
+    if shutil.which("setpriv"):  # ends the process with this one
         words = ["setpriv", "--pdeathsig", "TERM", *words]
-    done = subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
-    if done.returncode == 2:
-        return done.stderr
-    if done.returncode != 0:
-        raise RuntimeError(f"exit code {done.returncode}: {done.stderr.strip()[-1000:]}")
+    with subprocess.Popen(words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                          errors="replace") as process:
+        started(process)
+        said = process.stderr.read()
+    if process.returncode == 2:
+        return said
+    if process.returncode != 0:
+        raise RuntimeError(f"exit code {process.returncode}: {said.strip()[-1000:]}")
     return None
+
+
+def compute_task(command, folder, part):
+    """The task of a Dask worker. In a cluster with one worker per device the worker's name is the index of its device."""
+    from distributed import get_worker
+    place, devices = get_worker().name, []
+    if isinstance(place, int):
+        devices = subprocess.run([command[0], "devices", "--alike"], capture_output=True, text=True).stdout.split()
+    return compute_part(command, folder, part, devices[place % len(devices)] if devices else "")
 
 
 def send_by_value():
@@ -140,6 +198,7 @@ def main():
     tries, scheduler, *words = sys.argv[1:]
     with contextlib.ExitStack() as stack:
         client = stack.enter_context(client_of(scheduler)) if scheduler else None
+        raise_when_interrupted()
         compute(words, client=client, tries=int(tries))
 
 

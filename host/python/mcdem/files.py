@@ -4,11 +4,41 @@ import fcntl
 import os
 import pathlib
 import secrets
+import shutil
+import tempfile
 
 from .errors import InputError
 from .look import is_file, is_there
 
 HEAD = 1 << 16  # bytes of a file by which its kind is recognised
+unfinished: set[str | pathlib.Path] = set()  # paths of temporary files and folders
+
+
+def remove_unfinished():
+    """When the command is ended in the middle of its work (program.py)."""
+    for path in list(unfinished):
+        shutil.rmtree(path, ignore_errors=True)
+        with contextlib.suppress(OSError):
+            os.unlink(path)
+
+
+@contextlib.contextmanager
+def temporary_folder():
+    """A folder of this user alone, for as long as the context lasts."""
+    with tempfile.TemporaryDirectory(prefix="mcdem-") as folder:
+        unfinished.add(folder)
+        try:
+            yield pathlib.Path(folder)
+        finally:
+            unfinished.discard(folder)
+
+
+def read_whole(file):
+    """The file's bytes. An OSError names the file, also one of reading."""
+    try:
+        return pathlib.Path(file).read_bytes()
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(file)) from error
 
 
 @contextlib.contextmanager
@@ -16,9 +46,12 @@ def new_file(file):
     """A temporary file to write bytes to, which is then flushed to disk and renamed. An OSError names the file."""
     file = pathlib.Path(file)
     temporary = file.with_name(f"{file.name}.{secrets.token_hex(8)}.tmp")
+    unfinished.add(temporary)
     try:
         with open(temporary, "xb") as out:
-            fcntl.flock(out, fcntl.LOCK_EX)  # others remove only unlocked files (host/core/atomic_file.cpp)
+            # Others remove only unlocked files (host/core/atomic_file.cpp); some network file systems have no locks.
+            with contextlib.suppress(OSError):
+                fcntl.flock(out, fcntl.LOCK_EX)
             yield out
             out.flush()
             os.fsync(out.fileno())
@@ -29,6 +62,7 @@ def new_file(file):
         raise OSError(error.errno, error.strerror, str(file)) from error
     finally:
         temporary.unlink(missing_ok=True)
+        unfinished.discard(temporary)
 
 
 def write_whole(file, content):

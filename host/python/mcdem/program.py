@@ -1,28 +1,80 @@
-"""Runs a module as a command of the program: python3 -m mcdem.program MODULE ARGUMENT... (host/cli/shell/python_program.h).
+"""Runs a module as a command of the program: MODULE ARGUMENT... (start.py).
 
-Messages begin with `mcdem: `. Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted.
+Messages begin with `mcdem: `. Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted. An error that is not expected is one line,
+or with MCDEM_DEBUG its traceback.
 """
+import contextlib
+import io
 import os
 import runpy
 import signal
 import sys
+import time
+import traceback
+import warnings
 
 from .errors import INTERRUPTED, InputError, RunError
+from .files import remove_unfinished
 
 # Module -> Debian package, if its name is not python3-MODULE.
 PACKAGES = {"PIL": "python3-pil"}
 
+# Characters that a terminal obeys instead of showing them: C0 without tab and new line, C1 (also as bytes that are no UTF-8),
+# separators of lines, and those that change the direction of the text around them. As blank_control in host/cli/shell/standard_streams.h.
+CONTROL = [*range(0x20), *range(0x7f, 0xa0), *range(0xdc80, 0xdca0), 0x61c, 0x200e, 0x200f, *range(0x2028, 0x202f),
+           *range(0x2066, 0x206a)]
+BLANKS = dict.fromkeys(CONTROL, " ") | {ord("\n"): "\n", ord("\t"): "\t"}
+
+
+class Shown(io.TextIOWrapper):
+    """A stream to the user, with blanks for control characters: names come from files of others."""
+
+    def write(self, text):
+        super().write(text.translate(BLANKS))
+        return len(text)
+
+
+def shown(stream):
+    lines = stream.line_buffering
+    return Shown(stream.detach(), encoding="utf-8", errors="surrogateescape", line_buffering=lines)
+
+
+def is_debugged():
+    return bool(os.environ.get("MCDEM_DEBUG"))
+
 
 def say(text):
-    for line in str(text).splitlines():
-        print(f"mcdem: {line}", file=sys.stderr)
+    with contextlib.suppress(OSError):  # nobody is left to be told
+        for line in str(text).rstrip("\n").split("\n"):
+            print(f"mcdem: {line}", file=sys.stderr)
 
 
-def interrupt(number, frame):
-    """The first signal ends the command cleanly. Ctrl-C arrives twice, from the terminal and from the program."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    raise KeyboardInterrupt
+def end_at_once(number, frame):
+    """Ends the command. An exception would not do: in the middle of an import or of a callback of a library it becomes another one,
+    or is lost."""
+    remove_unfinished()
+    os._exit(INTERRUPTED)
+
+
+def handle_signals(handler):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:  # nohup
+            signal.signal(number, handler)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # python_program.cpp holds it back until here
+
+
+def raise_when_interrupted():
+    """From now on the first signal raises KeyboardInterrupt: for a command that waits for others and has to end them."""
+    first = []
+
+    def interrupt(number, frame):
+        if not first:
+            first.append(time.monotonic())
+            raise KeyboardInterrupt
+        if time.monotonic() - first[0] > 1:  # Ctrl-C arrives twice, from the terminal and from the program
+            end_at_once(number, frame)
+
+    handle_signals(interrupt)
 
 
 def exit_code_of(error):
@@ -41,10 +93,13 @@ def exit_code_of(error):
         say(error)
     elif isinstance(error, MemoryError):
         say("not enough memory")
-    elif isinstance(error, OSError):
+    elif isinstance(error, OSError) and (error.strerror or error.args):
         say(f"{error.filename}: {error.strerror}" if error.filename else error.strerror or error)
     else:
-        raise error
+        what = " ".join(f"{type(error).__name__} {error}".split())
+        say(f"internal error: {what}; please report it, with what MCDEM_DEBUG=1 shows")
+    if is_debugged():
+        traceback.print_exception(error)
     return 1
 
 
@@ -53,14 +108,21 @@ def run(module, arguments):
     try:
         runpy.run_module(module, run_name="__main__")
     except SystemExit as end:
-        return end.code if isinstance(end.code, int) else 0 if end.code is None else 1
+        if end.code is None or isinstance(end.code, int):
+            return end.code or 0
+        say(end.code)
+        return 1
     except BaseException as error:
         return exit_code_of(error)
+    finally:
+        handle_signals(end_at_once)
     return 0
 
 
 def flush(exit_code):
     """The exit code after all output is flushed."""
+    if sys.stdout.closed:
+        return exit_code
     was_terminal = sys.stdout.isatty()
     try:
         sys.stdout.flush()
@@ -74,10 +136,11 @@ def flush(exit_code):
 
 
 def main():
-    signal.signal(signal.SIGINT, interrupt)
-    signal.signal(signal.SIGTERM, interrupt)
-    sys.stdout.reconfigure(encoding="utf-8", errors="surrogateescape")
-    sys.stderr.reconfigure(encoding="utf-8", errors="surrogateescape")
+    handle_signals(end_at_once)
+    sys.stdout, sys.stderr = shown(sys.stdout), shown(sys.stderr)
+    if not is_debugged():  # what libraries say to programmers
+        warnings.simplefilter("ignore")
+        sys.unraisablehook = lambda _: None
     return flush(run(sys.argv[1], sys.argv[2:]))
 
 

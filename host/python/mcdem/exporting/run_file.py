@@ -1,8 +1,11 @@
 """Reads a run scan by scan from run.h5, or from the segments of an unfinished run (host/io/README.md)."""
+import contextlib
 import re
 
 import h5py
 import numpy as np
+
+from ..errors import RunError
 
 MAX_LABEL_LENGTH = 80  # characters in the name of a file
 PHASES = ("load", "unload")
@@ -14,8 +17,20 @@ def text(word):
     return word.decode("utf-8", "surrogateescape") if isinstance(word, bytes) else str(word)
 
 
+@contextlib.contextmanager
+def reading(path):
+    """What h5py raises becomes an error that names the file: a failed read is a KeyError or RuntimeError, or an OSError without a name."""
+    try:
+        yield
+    except FileNotFoundError:
+        raise
+    except (KeyError, OSError, RuntimeError, TypeError, ValueError) as error:
+        cause = re.search("error message = '(.*?)'", str(error))  # of HDF5, of a failed system call
+        raise RunError(f"{path}: cannot be read: {cause[1] if cause else ' '.join(str(error).split())}") from error
+
+
 def read_replicas(files):
-    with h5py.File(files[0], locking=False) as file:
+    with reading(files[0]), h5py.File(files[0], locking=False) as file:
         return [Replica(number, files, file) for number in range(file["parameters"].attrs["replicas"])]
 
 
@@ -44,16 +59,21 @@ class Replica:
     def scans(self):
         """All scans; contacts are read by Contacts, until the next scan."""
         for path in self.files:
-            with h5py.File(path, locking=False) as file:
-                for number, row in enumerate(file[f"observables/{self.name}"][:]):
-                    yield Scan(self, file, number, row)
+            with contextlib.ExitStack() as stack:
+                with reading(path):
+                    file = stack.enter_context(h5py.File(path, locking=False))
+                    rows = file[f"observables/{self.name}"][:]
+                for number, row in enumerate(rows):
+                    with reading(path):
+                        scan = Scan(self, file, path, number, row)
+                    yield scan
 
 
 class Scan:
     """One scan: positions [m], rotations [rad] and observables; `cell` has the current edges of the container as columns."""
 
-    def __init__(self, replica, file, number, row):
-        self.replica, self.file, self.number = replica, file, number
+    def __init__(self, replica, file, path, number, row):
+        self.replica, self.file, self.path, self.number = replica, file, path, number
         self.frame, self.cycle, self.phase = row["frame"], row["cycle"], PHASES[row["phase"]]
         self.time, self.plate_z, self.wall_force = row["time"], row["plate_z"], row["wall_force"]
         self.top_force = self.wall_force[PLATE][2]
@@ -81,9 +101,10 @@ class Contacts:
     """Contacts of a scan in arrays, and sums over them for each grain."""
 
     def __init__(self, scan):
-        group = scan.file[f"contacts/{scan.replica.name}"]
-        first, last = group["offset"][scan.number:scan.number + 2]
-        rows = group["contact"][first:last]
+        with reading(scan.path):
+            group = scan.file[f"contacts/{scan.replica.name}"]
+            first, last = group["offset"][scan.number:scan.number + 2]
+            rows = group["contact"][first:last]
         self.scan, self.grain, self.partner = scan, rows["grain"], rows["partner"]
         self.point, self.force, self.overlap = (rows[name].astype(float) for name in ("point", "force", "overlap"))
         self.magnitude = np.linalg.norm(self.force, axis=1)

@@ -1,10 +1,12 @@
 """Grains, contacts and walls as VTKHDF files (unstructured grids, version 1.0: ParaView 5.10, VTK 9.1 or later)."""
 import io
 import re
+import sys
 
 import h5py
 import numpy as np
 
+from ..errors import InputError
 from ..files import expect_replaceable, write_whole
 from .run_file import PERIODIC, PLATE, Contacts
 
@@ -45,6 +47,8 @@ The replicas here, with the scene keys that are not the same in all of the run:
 CELL_TYPES = np.array([1, 3, 7], np.uint8)  # of VTK: vertex, line, polygon
 CURVED_WALL, FLOOR = 0, 4  # numbers of walls; PLATE is another
 SIDES = 64  # of the polygon that approximates a circle
+VERSION = [1, 0]  # of VTKHDF
+SCAN_FIELDS = {"frame", "time", "plate_z", "top_force"}  # that all files have
 
 
 def export_replica(replica, folder, is_chosen):
@@ -52,32 +56,55 @@ def export_replica(replica, folder, is_chosen):
     numbered files of an earlier export, which ParaView would show in the same time series."""
     folder = folder / replica.file_name
     written = set()
-    first = last = None
+    motion = Motion()
     for scan in replica.scans():
         if scan.position is None:
             continue
-        first, last = first or scan, last or scan
+        motion.go_on_to(scan)
         if is_chosen(scan):
             folder.mkdir(exist_ok=True)
             contacts = Contacts(scan)
-            grids = {"grains": grains_grid(scan, contacts, first, last), "contacts": contacts_grid(scan, contacts),
+            grids = {"grains": grains_grid(scan, contacts, motion), "contacts": contacts_grid(scan, contacts),
                      "forces": forces_grid(contacts), "walls": walls_grid(scan)}
             for what, grid in grids.items():
                 file = folder / f"{what}_{scan.frame:06}.hdf"
                 expect_replaceable(file, "an export", b"\x89HDF\r\n", b"VTKHDF")
+                if file.exists() and file.stat().st_size > 0 and not is_own(file):
+                    raise InputError(f"{file}: is not an export; it is not replaced: give another path (--out), or remove it first")
                 write_whole(file, grid_bytes(scan, *grid))
                 written.add(file)
-        last = scan
     if written:
-        for file in set(folder.iterdir()) - written:
-            if re.fullmatch(r"(grains|contacts|forces|walls)_\d*\.hdf", file.name):
-                file.unlink()
+        remove_others(folder, written)
     return len(written)
+
+
+def is_own(file):
+    """Whether an export has written it: a grid of this version with the properties of a scan."""
+    try:
+        with h5py.File(file, "r", locking=False) as grid:
+            return list(grid["VTKHDF"].attrs["Version"]) == VERSION and SCAN_FIELDS <= set(grid["VTKHDF/FieldData"])
+    except (AttributeError, KeyError, OSError, RuntimeError, TypeError, ValueError):  # of others
+        return False
+
+
+def remove_others(folder, written):
+    """Removes the other numbered files of the folder, if an export has written them. Those of others are kept and told, and all
+    behind a symbolic link: the folder may be that of something else."""
+    for file in sorted(set(folder.iterdir()) - written):
+        if re.fullmatch(r"(grains|contacts|forces|walls)_\d*\.hdf", file.name):
+            if folder.is_symlink() or file.is_symlink():
+                why = "is reached by a symbolic link"
+            elif not file.is_file() or not is_own(file):
+                why = "is not an export"
+            else:
+                file.unlink()
+                continue
+            print(f"mcdem: {file}: {why}; it is kept, and ParaView shows it in the same time series", file=sys.stderr)
 
 
 def grid_bytes(scan, points, sizes, point_data, cell_data):
     """A VTKHDF file of cells with `sizes` points each, in sequence: vertices, lines and polygons. The properties of the scan are field data."""
-    fields = {"frame": scan.frame, "time": scan.time, "plate_z": scan.plate_z, "top_force": scan.top_force}
+    fields = {name: getattr(scan, name) for name in sorted(SCAN_FIELDS)}
     if scan.replica.is_cell:
         fields |= zip(("strain_x", "strain_y", "strain_z", "shear_xy", "shear_xz", "shear_yz"), scan.strain)
     tables = {"NumberOfPoints": [len(points)], "NumberOfCells": [len(sizes)], "NumberOfConnectivityIds": [len(points)],
@@ -86,7 +113,7 @@ def grid_bytes(scan, points, sizes, point_data, cell_data):
     image = io.BytesIO()  # written to disk as a whole, because HDF5 does not recover from a full disk
     with h5py.File(image, "w", libver="v110") as file:
         grid = file.create_group("VTKHDF")
-        grid.attrs["Version"] = [1, 0]
+        grid.attrs["Version"] = VERSION
         grid.attrs["Type"] = np.bytes_("UnstructuredGrid")
         groups = {"PointData": point_data, "CellData": cell_data,
                   "FieldData": {name: [float(value)] for name, value in fields.items()}}
@@ -100,11 +127,25 @@ def grid_bytes(scan, points, sizes, point_data, cell_data):
     return image.getbuffer()
 
 
-def displacement(scan, before):
-    """Of each grain [m]; continuous when it crosses the border of a periodic cell. In a `cell`, beyond the cell's own motion."""
-    motion = scan.deformation @ np.linalg.inv(before.deformation)
-    moved = scan.position - before.position @ motion.T
-    return scan.nearest(moved) if scan.replica.is_cell else moved
+class Motion:
+    """How far grains have moved, from scan to scan: since the first one, and since the last [m].
+
+    In a `cell`, whose grains are put back into it, a step is the shortest of the periodic images of where a grain would be had it only
+    moved with the cell, so grains must move less than half a period between scans. The steps are added: a grain's own way, without
+    what the cell's motion adds where it has got to. In other containers positions are continuous."""
+
+    def __init__(self):
+        self.last = self.scan = None
+        self.total = self.step = 0.0
+
+    def go_on_to(self, scan):
+        """The next scan that has positions, whether it is exported or not."""
+        self.last = self.scan or scan
+        self.scan = scan
+        motion = scan.deformation @ np.linalg.inv(self.last.deformation)
+        moved = scan.position - self.last.position @ motion.T
+        self.step = scan.nearest(moved) if scan.replica.is_cell else moved
+        self.total = self.total + self.step
 
 
 def rotation_since(scan, before):
@@ -121,8 +162,8 @@ def rotation_since(scan, before):
     return vector * np.where(sine > 0, 2 * np.arctan2(sine, abs(cosine)) / np.where(sine > 0, sine, 1), 2)
 
 
-def grains_grid(scan, contacts, first, last):
-    replica = scan.replica
+def grains_grid(scan, contacts, motion):
+    replica, last = scan.replica, motion.last
     count = len(scan.position)
     data = {"grain": np.arange(count, dtype=np.int32), "diameter": replica.diameter}
     if replica.species is not None:
@@ -131,7 +172,7 @@ def grains_grid(scan, contacts, first, last):
         stress = contacts.stress()
         data |= {"coordination_number": contacts.coordination_number(), "force_magnitude": contacts.force_magnitude(),
                  "stress": stress.reshape(-1, 9), "pressure": np.trace(stress, axis1=1, axis2=2) / 3}
-    data |= {"displacement": displacement(scan, first), "displacement_since_last_scan": displacement(scan, last)}
+    data |= {"displacement": motion.total, "displacement_since_last_scan": motion.step}
     if scan.rotation is not None:
         data["rotation"] = scan.rotation
     if scan.rotation is not None and last.rotation is not None:

@@ -2,6 +2,7 @@
 import json
 import pathlib
 
+from ..files import read_whole
 from ..look import is_folder, is_there
 
 FORMAT = 1
@@ -15,7 +16,7 @@ def read(source, name=None):
     if not is_there(file):
         raise FileNotFoundError(f"{file}: is not there; `mcdem figures RUN --out {file.parent}` writes it for a run, "
                                 "`mcdem diagnose`, `converge` and `challenge score` write it beside their results")
-    values = json.loads(file.read_text(encoding="utf-8"))
+    values = json.loads(read_whole(file).decode())
     if not isinstance(values, dict) or values.pop("mcdem_figures", None) != FORMAT:
         raise ValueError(f"{file}: must be a figures.json of this version of mcdem")
     if name is None:

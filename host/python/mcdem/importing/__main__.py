@@ -10,7 +10,7 @@ import sys
 import textwrap
 
 from ..errors import InputError
-from ..files import write_whole
+from ..files import read_whole, write_whole
 from ..look import is_there
 from .assemble import Known, import_tables, write_tables
 from .guess import guess_tables, mapping_of, read_import_tables, wrong_rows
@@ -54,8 +54,7 @@ def write_result(work, **result):
 
 def main():
     work, kept, given, *files = sys.argv[1:]
-    with open(os.path.join(work, "request.json"), encoding="utf-8") as file:
-        request = json.load(file)
+    request = json.loads(read_whole(os.path.join(work, "request.json")))
     known = Known(**{name: value for name, value in request["known"].items() if value is not None})
     if given:
         text = text_of_mapping(given)

@@ -1,13 +1,13 @@
 """Readers for files of simulation programs: dumps and data files of LAMMPS and LIGGGHTS, VTK, extended xyz."""
 import contextlib
 import io
-import pathlib
+import math
 import re
-import tempfile
 
 import numpy as np
 
 from ..errors import InputError
+from ..files import temporary_folder
 from .problems import quoted, to_number
 from .text import Form, numbers_of
 
@@ -108,10 +108,12 @@ def parse_xyz(table, text):
             if columns != names:
                 raise ValueError(f"the fields of a frame are {' '.join(columns)}, those of the first are {' '.join(names)}")
             step = next((atoms.info[key] for key in ("step", "Step", "timestep", "frame") if key in atoms.info), place)
-            table.frames.append((float(step), rows))
+            if not math.isfinite(step := float(step)):
+                raise ValueError(f"the step of a frame must be a finite number, got {step}")
+            table.frames.append((step, rows))
             frames.append(values)
             rows += len(values)
-    except Exception as error:  # ASE has no exception type for invalid files
+    except (Exception, SystemExit) as error:  # ASE has no exception type for invalid files
         raise InputError(f"{table.file}: must be extended xyz that ASE reads, got: {quoted(str(error) or type(error).__name__)}") from None
     table.set_numbers("xyz", names, np.concatenate(frames))
 
@@ -126,16 +128,20 @@ def parse_mesh(table, content):
     """VTK's unstructured grids, legacy or XML, read by meshio: a row is a point with its data."""
     import meshio
 
-    with tempfile.TemporaryDirectory(prefix="mcdem-") as folder:
-        file = pathlib.Path(folder, "mesh.vtk" if content.startswith(b"#") else "mesh.vtu")
+    if (kind := re.search(rb"<VTKFile[^>]*\stype=[\"']([^\"'<>]*)", content[:2000])) and kind[1] != b"UnstructuredGrid":
+        raise InputError(f"{table.file}: must be an UnstructuredGrid (.vtu), got {quoted(kind[1].decode(errors='replace'))}: save it in ParaView as "
+                         ".csv, or as .vtu behind the filter Append Datasets")
+    said = io.StringIO()
+    with temporary_folder() as folder:
+        file = folder / ("mesh.vtk" if content.startswith(b"#") else "mesh.vtu")
         file.write_bytes(content)
         try:
-            with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
                 mesh = meshio.read(file)
             columns, values = _with_fields(["x", "y", "z"], mesh.points, mesh.point_data)
-        except (Exception, SystemExit) as error:  # meshio exits if it cannot read a file
-            raise InputError(f"{table.file}: must be a VTK file that meshio reads, got: "
-                             + quoted(f"{type(error).__name__} {error}")) from None
+        except (Exception, SystemExit) as error:  # meshio prints and exits if it cannot read a file
+            why = " ".join(said.getvalue().split()) if isinstance(error, SystemExit) else f"{type(error).__name__} {error}"
+            raise InputError(f"{table.file}: must be a VTK file that meshio reads, got: {quoted(why.replace(str(file), 'it'))}") from None
     if not len(values):
         raise InputError(f"{table.file}: must hold points, got none")
     table.set_numbers("vtk", columns, values)

@@ -5,7 +5,7 @@ import re
 from ..errors import InputError
 
 MAX_TOLD = 20  # maximum number of reported problems
-NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)  # one way to match: in linear time
 
 
 class Problems:

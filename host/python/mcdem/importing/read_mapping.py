@@ -1,10 +1,10 @@
 """Reads mapping.toml, possibly edited by the user."""
 import os
-import pathlib
 import re
 import tomllib
 
 from ..errors import InputError
+from ..files import read_whole
 from ..look import is_file, is_there
 from .mapping import BY_DIRECTION, KEYS, WALLS, Guess, Key, MappedTable, find_key, meaning_of, must_be_stated
 from .problems import Problems, quoted, to_number
@@ -127,6 +127,6 @@ def text_of_mapping(file):
         got = "something else" if is_there(file) else "no such file"
         raise InputError(f"{file}: must be a mapping of at most 1 MB, got {got}")
     try:
-        return pathlib.Path(file).read_bytes().decode().replace("\r\n", "\n")
+        return read_whole(file).decode().replace("\r\n", "\n")
     except UnicodeDecodeError:
         raise InputError(f"{file}: must be text in UTF-8") from None

@@ -78,13 +78,15 @@ def _bytes_of(file):
     if not is_file(file):
         got = "something that is not a file" if is_there(file) else "no such file"
         raise InputError(f"{file}: must be a table, got {got}")
-    with open(file, "rb") as stream:
-        packed = stream.read(2) == b"\x1f\x8b"
-        stream.seek(0)
-        try:
+    try:
+        with open(file, "rb") as stream:
+            packed = stream.read(2) == b"\x1f\x8b"
+            stream.seek(0)
             content = (gzip.GzipFile(fileobj=stream) if packed else stream).read(LARGEST + 1)
-        except (EOFError, gzip.BadGzipFile, zlib.error) as error:
-            raise InputError(f"{file}: must be whole, got one that cannot be unpacked ({error}): pack it again with gzip") from None
+    except (EOFError, gzip.BadGzipFile, zlib.error) as error:
+        raise InputError(f"{file}: must be whole, got one that cannot be unpacked ({error}): pack it again with gzip") from None
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, file) from error
     if len(content) > LARGEST:
         raise InputError(f"{file}: must have at most 1 GiB, got more: leave out frames, or split it into several files")
     return content

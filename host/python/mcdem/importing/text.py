@@ -13,6 +13,7 @@ from .problems import quoted, to_number
 
 SAMPLED_LINES = 100
 MAX_COLUMNS = 10_000
+MAX_CELL = 10_000  # characters
 NOTHING = {"", "-", "--", "nan", "NaN", "NAN", "na", "NA", "N/A", "n/a", "null", "NULL", "inf"}
 UNITS = {*"- m cm mm um µm μm N cN mN kN MN uN µN μN g gf kgf lbf s ms min h % 1 voxel Pa kPa MPa bar °C C K mm/min mm/s V mV".split(), ""}
 THOUSANDS = {",": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,.*)?", re.ASCII | re.DOTALL),  # 12.345,6 with a decimal comma
@@ -56,7 +57,7 @@ def _numbers_in(cells, decimal):
 
 def sample(lines):
     """The first lines that are neither blank nor comments."""
-    return list(itertools.islice((line for line in lines if line.strip(" \t\r")[:1] not in ("", "#")), SAMPLED_LINES))
+    return list(itertools.islice((line for line in lines if line.strip()[:1] not in ("", "#")), SAMPLED_LINES))
 
 
 def _usual_width(rows):
@@ -125,17 +126,21 @@ def parse_text(table, lines, form, problems):
     above = _lines_above(lines, form.separator)
     headings, comment, format_, trailing, marks = [], [], [], False, {}
     for number, line in enumerate(lines, 1):
-        words = line.strip(" \t\r")
+        words = line.strip()
         if not words or problems.full or (words[0] == "#" and table.columns):
             continue
         if words[0] == "#":
-            words = words[1:].strip(" \t\r")
+            words = words[1:].strip()
             if words.startswith("format "):  # of Yade
                 format_ = words[7:].strip().removesuffix("_attrs").split("_")
             else:
                 comment = cut(words, form.separator if form.separator in words else " ")
             continue
         cells = cut(line, form.separator)
+        if len(line) > MAX_CELL and (wide := [place for place, cell in enumerate(cells, 1) if len(cell) > MAX_CELL]):
+            problems.add(f"{table.file}:{number}", f"column {wide[0]} must have at most {MAX_CELL} characters, got {quoted(cells[wide[0] - 1])} "
+                         f"with {len(cells[wide[0] - 1])}: correct the line, or leave out the column")
+            continue
         has_numbers = (not table.columns or not cells[-1]) and _numbers_in(cells, form.decimal) > 0
         if len(cells) > 1 and not cells[-1] and has_numbers:  # a separator at the end of the line
             trailing = trailing or not table.columns
