@@ -35,6 +35,9 @@ def main():
     assert run(skipped("layout", "GPUs do not use the layout of CPUs"))[0] == 0
     code, said = run(gtest, skipped("slurm", "starting\nslurmctld is not installed"))
     assert code == 1 and said.splitlines()[1] == "did not run: slurm: slurmctld is not installed", said
+    authors = suite.replace("the tables are not here", "the authors' data are not here (tests/README.md): input.data")
+    assert run(PASSED, authors) == (0, "did not run: Cell.Two: the authors' data are not here (tests/README.md): input.data\n")
+    assert run(skipped("other", "no table: the authors' data are not here"))[0] == 1
     assert run(skipped("silent", ""))[0] == 1
 
 

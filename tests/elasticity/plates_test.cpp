@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -21,7 +20,7 @@ using std::numbers::pi;
 using Directions = std::vector<Vec3>;
 using Row = std::map<std::string, std::string>;
 
-const std::string fem_folder = MCDEM_SHARED_DATA "/fem/";
+const std::string fem_folder = MCDEM_SOURCE_DIR "/tests/truth/fem/";
 
 /// A table of comma-separated values, by the column names in its first line.
 std::vector<Row> read_table(const std::string& file) {
@@ -105,8 +104,6 @@ double fem_ratio(ContactModel model, const Row& row) {
 class FiniteElements : public testing::Test {
 protected:
     void SetUp() override {
-        if (!std::filesystem::exists(fem_folder))
-            GTEST_SKIP() << "the finite-element tables are not here: " << fem_folder;
         forces_ = read_table(fem_folder + "sphere_between_plates.csv");
         displacements_ = read_table(fem_folder + "equator_bulge.csv");
         ASSERT_EQ(forces_.size(), 36u);

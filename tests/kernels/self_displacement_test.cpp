@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -24,7 +23,7 @@ struct Row {
 
 /// Tables with the columns case, poisson_ratio, overlap_over_R and one value.
 std::vector<Row> read_rows(const std::string& name) {
-    std::ifstream file(MCDEM_SHARED_DATA "/fem/" + name);
+    std::ifstream file(MCDEM_SOURCE_DIR "/tests/truth/fem/" + name);
     std::vector<Row> rows;
     std::string line;
     std::getline(file, line);
@@ -39,8 +38,6 @@ std::vector<Row> read_rows(const std::string& name) {
     }
     return rows;
 }
-
-bool missing() { return !std::filesystem::exists(MCDEM_SHARED_DATA "/fem"); }
 
 /// A grain in a box of these half widths over its radius, slightly off the centre, so that it has to settle.
 Start held_grain(ContactModel model, double poisson_ratio, const Vec3& half_width) {
@@ -110,7 +107,6 @@ TEST(Plates, ForcesConvergeToTheStaticSolutionOfEveryModel) {
 }
 
 TEST(Plates, ElasticSphereAgreesWithFiniteElements) {
-    if (missing()) GTEST_SKIP() << "the finite-element tables are not here";
     const auto rows = read_rows("sphere_between_plates.csv");
     ASSERT_EQ(rows.size(), 36u);
     std::vector<Start> starts;
@@ -138,7 +134,6 @@ Start beside_walls(const Row& row, double overlap) {
 // have no force; at a gap 5 % smaller they have one. The grain is in the middle, since gaps are as small as
 // 1e-4 radii.
 TEST(Plates, EquatorTouchesTheSideWallsAtTheExpectedOverlap) {
-    if (missing()) GTEST_SKIP() << "the finite-element tables are not here";
     const auto rows = read_rows("equator_bulge.csv");
     ASSERT_EQ(rows.size(), 18u);
     std::vector<Start> below, above;

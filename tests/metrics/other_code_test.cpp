@@ -1,10 +1,8 @@
 // The metrics of curves that another code computed for the authors' packing.
-#include <gtest/gtest.h>
-
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "authors_data.h"
 #include "metrics/compare.h"
 
 namespace mcdem {
@@ -31,11 +29,10 @@ Recording curve(const std::filesystem::path& file) {
 }
 
 TEST(OtherCode, ratio_of_its_peaks_is_known) {
-    const std::filesystem::path folder = std::filesystem::path(MCDEM_SHARED_DATA) / "hydrogel";
-    if (!std::filesystem::exists(folder / "liggghts_hertz.csv"))
-        GTEST_SKIP() << "the other code's curves are not here: " << folder;
-    const auto hertz = curve(folder / "liggghts_hertz.csv");
-    const auto half_space = curve(folder / "liggghts_half_space_gamma_1.csv");
+    SKIP_WITHOUT_AUTHORS_DATA("liggghts_hertz.csv");
+    SKIP_WITHOUT_AUTHORS_DATA("liggghts_half_space_gamma_1.csv");
+    const auto hertz = curve(reference::authors_folder / "liggghts_hertz.csv");
+    const auto half_space = curve(reference::authors_folder / "liggghts_half_space_gamma_1.csv");
     const auto c = compare({"hertz", {&hertz}}, {&half_space});
     EXPECT_NEAR(c.Rtop.value, 6.69 / 13.29, 0.005);
     EXPECT_EQ(c.levels_errf, c.reference_levels);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "authors_data.h"
 #include "scene/packing/make_packing.h"
 #include "scene_test_tools.h"
 
@@ -27,8 +28,8 @@ std::vector<std::string> csv_problems(const std::string& text) {
 const std::string title = "a title with 3 atoms in it\n\n";
 
 TEST(MeasuredPacking, HasTheStatisticsOfTheExperiment) {
-    const std::string file = std::string(MCDEM_SHARED_DATA) + "/hydrogel/input.data";
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << "the measured packing is not here: " << file;
+    SKIP_WITHOUT_AUTHORS_DATA("input.data");
+    const std::string file = (reference::authors_folder / "input.data").string();
     const Packing packing = read_packing(file);
     ASSERT_EQ(packing.size(), 514u);
     double mean = 0, square = 0, volume = 0;

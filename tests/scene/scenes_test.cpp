@@ -1,4 +1,5 @@
 // Every scene of scenes/ is valid and agrees with its comments.
+#include "authors_data.h"
 #include "scene/packing/make_packing.h"
 #include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
@@ -53,8 +54,8 @@ TEST(Scenes, PaperExperimentHasThePapersParameters) {
 }
 
 TEST(Scenes, PaperExperimentUsesTheMeasuredPacking) {
-    const std::string data = std::string(MCDEM_SHARED_DATA) + "/hydrogel/input.data";
-    if (!std::filesystem::exists(data)) GTEST_SKIP() << "the measured packing is not here: " << data;
+    SKIP_WITHOUT_AUTHORS_DATA("input.data");
+    const std::string data = (reference::authors_folder / "input.data").string();
     const Scene scene = read_scene(folder / "paper_experiment.toml", {"packing.file=" + data});
     EXPECT_EQ(make_packing(scene.replicas.at(0)).size(), 514u);
 }

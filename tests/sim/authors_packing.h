@@ -1,23 +1,15 @@
 // Compression strokes of the authors' packing, in many replicas whose initial positions differ by the
 // measurement error. Single runs are chaotic and scatter by several per cent.
 #pragma once
-#include <gtest/gtest.h>
-
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "authors_data.h"
 #include "core/recording.h"
 #include "scene/scene.h"
 
 namespace reference {
-
-inline const std::filesystem::path authors_folder = std::filesystem::path(MCDEM_SHARED_DATA) / "hydrogel";
-
-#define SKIP_WITHOUT_AUTHORS_PACKING()                           \
-    if (!std::filesystem::exists(authors_folder / "input.data")) \
-    GTEST_SKIP() << "no authors' packing: " << authors_folder << " is missing"
 
 /// Settings of the other code: one continuous stroke of 0.3 s, the Mindlin friction that it has, no
 /// relaxation before.

@@ -51,7 +51,9 @@ void expect_agreement(const Curve& ours, const char* name) {
 }
 
 TEST(AuthorsPacking, AgreesWithAnotherCode) {
-    SKIP_WITHOUT_AUTHORS_PACKING();
+    SKIP_WITHOUT_AUTHORS_DATA("input.data");
+    SKIP_WITHOUT_AUTHORS_DATA("liggghts_hertz.csv");
+    SKIP_WITHOUT_AUTHORS_DATA("liggghts_half_space_gamma_1.csv");
     const auto curves =
         loading_strokes({{"hertz", {authors_replica(ContactModel::independent, 300)}},
                          {"half space", {authors_replica(ContactModel::elastic_half_space, 300)}}},
@@ -67,7 +69,7 @@ struct Ratio {
 };
 
 TEST(AuthorsPacking, ModelRatiosAgreeWithThePaper) {
-    SKIP_WITHOUT_AUTHORS_PACKING();
+    SKIP_WITHOUT_AUTHORS_DATA("input.data");
     // Independent: the paper has 0.43 +- 0.02 from the history of one packing. Single runs here scatter by
     // 0.02 about a mean of 0.46, so the upper bound is 0.48.
     const std::vector<Ratio> ratios{
@@ -120,7 +122,7 @@ void expect_same(const MeanCurve& base, const MeanCurve& changed, const char* wh
 }
 
 TEST(AuthorsPacking, IsQuasiStatic) {
-    SKIP_WITHOUT_AUTHORS_PACKING();
+    SKIP_WITHOUT_AUTHORS_DATA("input.data");
     const Replica base = authors_replica(ContactModel::mc_dem, 30);
     Replica half_step = base, half_speed = base, half_density = base;
     half_step.numerics.time_step /= 2;
@@ -136,7 +138,7 @@ TEST(AuthorsPacking, IsQuasiStatic) {
 }
 
 TEST(AuthorsPacking, FloatAgreesWithDouble) {
-    SKIP_WITHOUT_AUTHORS_PACKING();
+    SKIP_WITHOUT_AUTHORS_DATA("input.data");
     const Replica base = authors_replica(ContactModel::mc_dem, 30);
     const auto curves =
         loading_strokes({{"float", {base}}, {"double", {base, Precision::double_precision}}}, replicas);
