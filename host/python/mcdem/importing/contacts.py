@@ -27,6 +27,8 @@ class _Reader:
     def __init__(self, table, grains, problems, most):
         self.map, self.grains = table.map, grains
         self.rows = Rows(table, problems, most)
+        self.rows.expect_quantity("force", ("fx", "fy", "fz", "force"))
+        self.rows.expect_quantity("length", "xyz")
         self.offset = whole_entry(self.map, "id_offset", problems)
         self.one_wall = self.map.word("partner") if self.map.word("partner") in WALLS else None
 

@@ -61,6 +61,7 @@ def _read_table(table, frames, problems):
     first = whole_entry(mapped, "first_grain", problems)
     if rows.lacks("x", "y", "z", *[size_key] * (size_key in SIZE_KEYS)):
         return
+    rows.expect_quantity("length", ("x", "y", "z", size_key))
     if not len(rows):
         problems.add(mapped.files[0], "must have rows, one for each grain of a frame: leave a table without any out")
         return

@@ -2,7 +2,7 @@
 import re
 
 from .mapping import SIZE_KEYS, UNCLEAR, Guess, guess, signed_column
-from .names import COUNTED, FORCES, LENGTH_WORDS, VOXEL, column_name, columns_by_key
+from .names import COUNTED, FORCES, LENGTH_WORDS, VOXEL, column_name, columns_by_key, other_quantity
 
 LENGTH_KEYS = ("x", "y", "z", *SIZE_KEYS, "plate_z", "displacement")
 FORCE_KEYS = ("fx", "fy", "fz", "force", "top_force", "set_force")
@@ -33,7 +33,10 @@ def _note_unit(mapped, key, keys, known):
     """The unit in the names of these columns, if they agree and it is known."""
     names = [column_name(signed_column(word)[1]) for entry in keys if entry in mapped for word in mapped[entry].words]
     units = sorted({name.unit + name.unknown for name in names} - {""}, key=lambda unit: (unit in known, unit))
-    if units and units[0] not in known:
+    others = [what for name in names if (what := other_quantity(name, key.removesuffix("_unit")))]
+    if others:
+        mapped[key] = guess(units[-1] if units[-1] in known else known[0], UNCLEAR, others[0])
+    elif units and units[0] not in known:
         mapped[key] = guess(units[-1] if units[-1] in known else known[0], UNCLEAR,
                             f"a name says [{units[0]}], which is none of {' '.join(known)}: change the table")
     elif len(units) == 1:

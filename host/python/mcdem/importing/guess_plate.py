@@ -5,6 +5,7 @@ from .contacts import import_contacts, wall_partner
 from .guess_contacts import ROUGH, decide_force_unit, hertz_force
 from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
 from .mapping import UNCLEAR, guess, signed_column
+from .names import LENGTHS
 from .plate import import_plate
 from .problems import Problems
 from .rows import of_role
@@ -29,17 +30,42 @@ class _Plate:
         return float(np.median(self.force[loaded] / expected[loaded])) if loaded.any() else np.nan
 
 
+def _pulls_and_pushes(force):
+    """Whether forces of both signs are more than an error of the zero: a plate that sticks is pulled on its way back."""
+    low, high = force.min(initial=0), force.max(initial=0)
+    return min(-low, high) > 0.1 * max(-low, high)
+
+
+def _first_way(z, force):
+    """The direction of the first move that loads a plate which begins without a force: -1 down, 1 up; 0 if it begins under force."""
+    size = np.abs(force)
+    moved = np.flatnonzero(np.abs(z - z[0]) > 0.2 * np.ptp(z))
+    if not len(moved) or size[0] > 0.2 * size.max() or size[:moved[0] + 1].max() < 1e-3 * size.max():
+        return 0
+    return int(np.sign(z[moved[0]] - z[0]))
+
+
 def _guess_downwards(mapped, rows):
-    """Guesses the direction: the force increases while the plate moves down."""
-    place = "displacement" if "displacement" in mapped else "plate_z"
-    if len(rows) < 3 or mapped[place].certainty == UNCLEAR or not np.isfinite(rows.z + rows.force).any():
+    """Guesses the direction: the force increases while the plate moves down. Its size alone does not tell it of a plate that sticks:
+    where sizes, signs and the first move disagree, the direction must be confirmed."""
+    place, known = "displacement" if "displacement" in mapped else "plate_z", np.isfinite(rows.z + rows.force)
+    if len(rows) < 3 or mapped[place].certainty == UNCLEAR or not known.any():
         return
-    low, high, force = np.nanmin(rows.z), np.nanmax(rows.z), np.abs(rows.force)
-    above = np.nanmean(force[rows.z >= high - 0.2 * (high - low)])
-    below = np.nanmean(force[rows.z <= low + 0.2 * (high - low)])
-    if above > 2 * below:
-        mapped[place] = guess("-" + mapped.word(place), "sure", f"its force is {above:.4g} at the upper end and {below:.4g} at the lower one "
-                              "if the column is taken as it is, and the plate presses on its way down")
+    z, force = rows.z[known], rows.force[known]
+    above, below = (np.abs(force[at]).mean() for at in (z >= z.max() - 0.2 * np.ptp(z), z <= z.min() + 0.2 * np.ptp(z)))
+    first, by_size = _first_way(z, force), 1 if above > 2 * below else -1 if below > 2 * above else 0
+    word = mapped.word(place)
+    ends = f"its force is {above:.4g} at the upper end and {below:.4g} at the lower one if the column is taken as it is"
+    sticks = _pulls_and_pushes(force)
+    if by_size <= 0 and first <= 0 and not (sticks and 0 in (by_size, first)):
+        return
+    if by_size > 0 and first >= 0 and not (sticks and first == 0):
+        mapped[place] = guess("-" + word, "sure", f"{ends}, and the plate presses on its way down")
+    else:
+        reverse = first > 0 or (first == 0 and z[0] > (z.min() + z.max()) / 2)
+        way = "first moves " + ("up" if first > 0 else "down") if first else "begins under force"
+        mapped[place] = guess("-" + word if reverse else word, UNCLEAR, f"{ends}, where the plate {way}, and a plate that sticks is pulled on its way "
+                              "back: does the column count upwards? Then write a - before its name, otherwise none")
 
 
 def _guess_origin(mapped, plate, factors, unit_of_grains):
@@ -58,6 +84,12 @@ def _guess_origin(mapped, plate, factors, unit_of_grains):
                                f"counted from 0 the plate would be at {height:.4g} at the lowest: where is the floor, as {column} counts?")
 
 
+def _units_above_floor(rows, start):
+    """Units in which displacements leave the plate above the floor, the largest first."""
+    down = start - np.nanmin(rows.z) if np.isfinite(rows.z).any() else np.nan
+    return [unit for unit, factor in sorted(LENGTHS.items(), key=lambda unit: -unit[1]) if 0 < down * factor < start]
+
+
 def _guess_height(mapped, plate, start, factors):
     """The unit in which the plate touches the grains at its lowest position."""
     grains, fits, seen = plate.grains, [], ""
@@ -74,8 +106,12 @@ def _guess_height(mapped, plate, start, factors):
             fits = fitting_units(factors, z, top, 0.6, 1.6)
             seen = f"at the lowest the plate is at {z:.4g}, the grains reach up to {top:.4g} m"
     if "length_unit" not in mapped or (seen and mapped.word("length_unit") in factors):
-        unknown = "plate.start is not known: --set plate.start=.. would tell" if goes_down else "there are no grains to compare with"
-        decide_unit(mapped, "length_unit", fits, seen, (fits[0] if fits else "m", seen or f"no name says it, and {unknown}"))
+        likely, unknown = "m", "there are no grains to compare with"
+        if goes_down and np.isnan(start):
+            unknown = "plate.start is not known: --set plate.start=.. would tell"
+        elif goes_down and (units := _units_above_floor(plate.rows, start)):
+            likely, unknown = units[0], f"{unknown}; above the floor the plate stays in {', '.join(units)}"
+        decide_unit(mapped, "length_unit", fits, seen, (fits[0] if fits else likely, seen or f"no name says it, and {unknown}"))
 
 
 def _contact_forces(tables, grains):
@@ -91,12 +127,21 @@ def _contact_forces(tables, grains):
     return np.where(counts > 0, sums, np.nan)
 
 
+def _sign_at_the_lowest(rows):
+    """The sign of the force where the plate is lowest, and the grains push; empty if there is none."""
+    known = np.isfinite(rows.z + rows.force)
+    z, force = rows.z[known], rows.force[known]
+    low = force[z <= z.min() + 0.05 * np.ptp(z)].mean() if known.any() else 0
+    return "-" if low < 0 else "+" if low > 0 else ""
+
+
 def _guess_force(table, others, plate, known):
     mapped, force = table.map, plate.rows.force[np.isfinite(plate.rows.force)]
     low, high = force.min(initial=np.inf), force.max(initial=-np.inf)
-    clear = min(abs(low), abs(high)) < 0.3 * max(abs(low), abs(high))
-    mapped["force_sign"] = guess("-" if abs(low) > abs(high) else "+", "sure" if clear else UNCLEAR,
-                                 f"forces reach from {low:.4g} to {high:.4g}, and the grains push")
+    larger, deep = "-" if abs(low) > abs(high) else "+", _sign_at_the_lowest(plate.rows)
+    clear = min(abs(low), abs(high)) < 0.3 * max(abs(low), abs(high)) and deep in ("", larger)
+    mapped["force_sign"] = guess(deep or larger, "sure" if clear else UNCLEAR, f"forces reach from {low:.4g} to {high:.4g}, and the grains push"
+                                 + (f"; at the lowest the sign is {deep}, and the plate may stick on its way back" if not clear and deep else ""))
     ratio, truth = plate.force_ratio(_contact_forces(others, plate.grains)[plate.frames]), "of the contacts with the plate"
     by_hertz = np.isnan(ratio)
     if by_hertz and len(plate.frames):

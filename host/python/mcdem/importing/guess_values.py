@@ -3,7 +3,7 @@ import numpy as np
 
 from .guess_lengths import nearest_over_radii
 from .mapping import UNCLEAR, guess
-from .names import columns_by_key
+from .names import WORDS, column_name, columns_by_key, other_quantity
 
 MAX_ROWS, MAX_COLUMNS = 20_000, 50  # maximum size used for guesses
 
@@ -19,8 +19,46 @@ def _has_numbers(numbers):
     return 2 * np.isfinite(numbers).sum(axis=0) > len(numbers)
 
 
+def _named(role, columns):
+    """The key that its name tells for each of the columns, "" where it tells none. A repeated name tells none."""
+    keys = {names[0]: key for key, names in columns_by_key(role, columns).items() if len(names) == 1}
+    return [keys.get(column, "") for column in columns]
+
+
+def _agrees(named, place, keys):
+    """Whether no name contradicts that the columns from `place` on are the `keys`: neither their own ones nor those of others."""
+    return all(name in ("", key) and (name or key not in named) for name, key in zip(named[place:], keys))
+
+
+def _note_named(mapped, named, columns, keys):
+    mapped.entries.update({key: guess(name, "sure", "its name") for key, name in zip(named, columns) if key in keys})
+
+
+def _guess_named_centres(table, numbers, whole, rows):
+    """x, y and z by their names; the size among the columns without a meaning, confirmed by the user: the distances to neighbours
+    tell how far it is from a radius and a diameter."""
+    part, mapped = table.parts[0], table.map
+    named = _named("grains", part.columns)
+    at = [named.index(key) for key in "xyz"]
+    mapped.role, mapped.role_certainty, mapped.role_why = "grains", UNCLEAR, "its columns x, y and z are named so, and none as a size"
+    _note_named(mapped, named, part.columns, ("x", "y", "z", "grain", "frame"))
+    found = []
+    for c in range(len(whole)):
+        size = numbers[:rows, c]
+        may_be = not named[c] and not whole[c] and column_name(part.columns[c]).quantity in ("", "a length")
+        if may_be and np.isfinite(size).all() and (size >= 0).all() and (size > 0).mean() > 0.9:
+            ratio = nearest_over_radii(numbers[:rows][size > 0][:, at], size[size > 0])
+            found += [(abs(np.log(ratio / other)), key, ratio, c) for key, other in (("diameter", 1), ("radius", 2)) if 0.5 < ratio < 4]
+    if found:
+        _, key, ratio, c = min(found)
+        mapped.role_certainty = "likely"
+        mapped[key] = guess(part.columns[c], UNCLEAR, f"no name says it, and the nearest neighbours are {ratio:.3g} times its numbers apart (diameters: "
+                            "about 1, radii: 2): is it the size? Where no column has it, write same_diameter in its place")
+
+
 def guess_grains_by_values(table):
-    """Four columns that give touching spheres."""
+    """Four columns that give touching spheres. Names beat geometry: a column that is named otherwise is none of them, and columns
+    named x, y and z are the centres."""
     part, mapped = table.parts[0], table.map
     numbers, whole = _numbers_of(part)
     if len(numbers) < 3:
@@ -28,18 +66,28 @@ def guess_grains_by_values(table):
     # The first frame ends where an integer column that is constant at first changes.
     change = np.argmax(numbers != numbers[0], axis=0)
     rows = min([len(numbers), *(start for _, start in part.frames[1:2]), *change[whole & (change > 1)]])
+    named = _named("grains", part.columns)[:len(whole)]
+    forces = {*columns_by_key("contacts", part.columns)} & {"fx", "fy", "fz", "force", "partner"}
+    if {"x", "y", "z"} <= {*named} and forces:
+        return
+    if {"x", "y", "z"} <= {*named}:
+        _guess_named_centres(table, numbers, whole, rows)
+        return
     for c in range(len(whole) - 3):
         four = numbers[:rows, c:c + 4]
         if not np.isfinite(four).all() or not (four[:, 3] > 0).all() or (whole[c] and whole[c + 3]):
+            continue
+        if not _agrees(named, c, "xyz") or named[c + 3] not in ("", "diameter", "radius"):
             continue
         ratio = nearest_over_radii(four[:, :3], four[:, 3])
         size_key = "diameter" if 0.75 < ratio < 1.25 else "radius" if 1.5 < ratio < 2.5 else None
         if size_key:
             mapped.role, mapped.role_certainty = "grains", "likely"
             mapped.role_why = f"columns {c + 1} to {c + 4} taken for spheres touch one another"
-            for key, column in zip(("x", "y", "z", size_key), part.columns[c:]):
+            for key, column in zip(("x", "y", "z", named[c + 3] or size_key), part.columns[c:]):
                 mapped[key] = guess(column, "likely", "spheres touch one another in the usual order")
-            for k in np.flatnonzero(whole[:c]):
+            _note_named(mapped, named, part.columns, ("grain", "frame"))
+            for k in (k for k in np.flatnonzero(whole[:c]) if not named[k]):
                 different = len(np.unique(numbers[:rows, k]))
                 if different == 1 and rows < len(numbers) and not part.frames:
                     mapped.entries.setdefault("frame", guess(part.columns[k], "likely", "whole numbers, the same over many rows"))
@@ -75,14 +123,18 @@ def _alignment(force, away):
 
 
 def guess_contacts_by_values(table, grains):
-    """Two columns with numbers of touching grains, and forces along the lines of centres."""
+    """Two columns with numbers of touching grains, and forces along the lines of centres; none that are named otherwise."""
     part, mapped = table.parts[0], table.map
     numbers, whole = _numbers_of(part)
+    named = _named("contacts", part.columns)[:len(whole)]
     for a in np.flatnonzero(whole[:-1] & whole[1:]) if grains.keys else ():
+        if not _agrees(named, a, ("grain", "partner")):
+            continue
         rows, away = _touching_pairs(part, numbers[:, a:a + 2], grains)
         if not len(rows):
             continue
-        fits = {c: _alignment(numbers[rows, c:c + 3], away) for c in range(len(whole) - 2) if c > a + 1 or c + 2 < a}
+        fits = {c: _alignment(numbers[rows, c:c + 3], away) for c in range(len(whole) - 2)
+                if (c > a + 1 or c + 2 < a) and _agrees(named, c, ("fx", "fy", "fz"))}
         best = max(fits, key=fits.get, default=0)
         most, good = fits.get(best, 0), sum(fit > 0.9 for fit in fits.values())
         others = np.delete(_has_numbers(numbers) & ~whole, slice(best, best + 3)).sum()
@@ -106,13 +158,16 @@ def guess_plate_by_values(table):
         missing = "top_force" if "top_force" not in named else "plate_z or displacement"
         others = [name for name in part.columns if name not in {names[0] for names in named.values()}]
         mapped.role_why = f"no column is named as {missing}, which a plate's table must have; other columns: {', '.join(others) or 'none'}"
+        if no_force := [what for name in others if (what := other_quantity(name, "force"))] if missing == "top_force" else ():
+            mapped.role_why += f"; {no_force[0]}"
         mapped.entries.update({key: guess(names[0], UNCLEAR, "its name") for key, names in named.items()})
     elif len(numeric) >= 2 and len(part.columns) <= 8:
         mapped.role_why = "no names, no grains"
         if len(numeric) > 2 and not (np.diff(part.numbers(part.find(numeric[0]))) <= 0).any():
             mapped["frame"] = guess(numeric.pop(0), UNCLEAR, "rises from row to row")
-        for key, name in zip(("plate_z", "top_force"), numeric):
-            mapped[key] = guess(name, UNCLEAR, "by its place only")
+        forces = sorted(numeric[1:], key=lambda name: column_name(name).quantity != "a force")  # a name beats the place
+        for key, name, quantity in zip(("plate_z", "top_force"), [numeric[0], *forces], ("length", "force")):
+            mapped[key] = guess(name, UNCLEAR, other_quantity(name, quantity) or "by its place only")
     else:
         return
     mapped.role, mapped.role_certainty = "plate", UNCLEAR

@@ -17,7 +17,11 @@ TIMES = _factors("s sec ms min h", "s")
 VOXEL = "voxel"  # a length unit with its size in the mapping
 LENGTH_WORDS = [*LENGTHS, VOXEL]
 SYNONYMS = {"µm": "um", "μm": "um", "micron": "um", "µN": "uN", "μN": "uN", "g": "gf", "kg": "kgf", "gram": "gf", "newton": "N",
-            "newtons": "N", "meter": "m", "voxels": VOXEL, "vox": VOXEL, "vx": VOXEL, "px": VOXEL, "pixel": VOXEL, "pixels": VOXEL}
+            "newtons": "N", "meter": "m", "voxels": VOXEL, "vox": VOXEL, "vx": VOXEL, "pix": VOXEL, "px": VOXEL, "pixel": VOXEL, "pixels": VOXEL}
+PRESSURES = {*"Pa hPa kPa MPa GPa mbar psi ksi atm torr mmHg bar".split()}
+PRESSURE_NAMES = "pressure stress druck spannung pression contrainte axialstress axialpressure verticalstress normalstress pistonpressure " \
+    "compressivestress compressionstress engineeringstress nominalstress normalspannung druckspannung pressspannung sigma sigmaz sigmazz"
+FRACTIONS = {"%", "percent", "prozent", "pct", "mm/mm", "m/m"}
 DOWNWARDS = "depth tiefe profondeur zdown zdownwards"  # names of a downward z
 # Meanings of frame numbers.
 COUNTED = {"time": "time t zeit temps", "step": "step timestep schritt iter", "scan": "frame scan image snapshot bild state"}
@@ -29,7 +33,7 @@ WORDS = {
         _FRAME,
         ("cycle", "cycle zyklus ncycle cyclenumber"),
         ("phase", "phase direction richtung loading"),
-        ("plate_z", "platez zplate plateheight height z gap plateposition position pos hoehe h platte top ztop topz lid piston "
+        ("plate_z", "platez zplate plateheight height z gap plateposition position pos hoehe h platte top ztop topz lid piston bedheight "
                     "pistonposition zpiston platenposition platen"),
         ("displacement", "displacement disp stroke travel weg hub verschiebung compression extension crosshead compressiveextension "
                          "compressivedisplacement axialdisplacement standardtravel standardweg traverse traversenweg "
@@ -41,9 +45,10 @@ WORDS = {
     "grains": [
         _FRAME,
         ("grain", "grain id particle label index korn teilchen nr no number atom particleid grainid bead beadid"),
-        ("x", "x xc cx posx xpos centroidx xcentroid centerx xcenter xu px positionx centroid2 barycenterx centerofmassx"),
-        ("y", "y yc cy posy ypos centroidy ycentroid centery ycenter yu py positiony centroid1 barycentery centerofmassy"),
-        ("z", "z zc cz posz zpos centroidz zcentroid centerz zcenter zu pz positionz centroid0 barycenterz centerofmassz " + DOWNWARDS),
+        ("x", "x xc cx posx xpos centroidx xcentroid centerx xcenter centrex xcentre coordx xcoord comx xcom xu px positionx centroid2 barycenterx centerofmassx"),
+        ("y", "y yc cy posy ypos centroidy ycentroid centery ycenter centrey ycentre coordy ycoord comy ycom yu py positiony centroid1 barycentery centerofmassy"),
+        ("z", "z zc cz posz zpos centroidz zcentroid centerz zcenter centrez zcentre coordz zcoord comz zcom zu pz positionz centroid0 barycenterz centerofmassz "
+              + DOWNWARDS),
         ("diameter", "diameter d dia diam durchmesser diametre equivalentdiameterarea equivalentdiameter eqdiameter equivdiam equivalentsphericaldiameter"),
         ("radius", "radius r rad radii halbmesser rayon equivalentradius equivalentradii equivradius equivradii eqradius"),
         ("volume", "volume volume3d volumen vol"),
@@ -69,7 +74,15 @@ _LETTERS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "Ä": 
 class ColumnName(NamedTuple):
     base: str = ""  # only lower-case letters and digits, without the unit: "toppressure"
     unit: str = ""  # of length, force or time; empty if there is none
-    unknown: str = ""  # unknown unit in brackets
+    unknown: str = ""  # a unit in brackets of another quantity, or of an unknown one; without brackets of a pressure or a fraction
+
+    @property
+    def quantity(self):
+        """What the name says that the column has: a length, a force, a time, a pressure or a fraction; empty if it says nothing."""
+        of_units = {"a length": self.unit in LENGTH_WORDS, "a force": self.unit in FORCES, "a time": self.unit in TIMES,
+                    "a pressure": _is_pressure(self.unknown) or not (self.unit or self.unknown) and self.base in PRESSURE_NAMES.split(),
+                    "a fraction": self.unknown.lower() in FRACTIONS}
+        return next((quantity for quantity, is_so in of_units.items() if is_so), "")
 
 
 def _known_unit(word):
@@ -79,17 +92,39 @@ def _known_unit(word):
     return word if word in LENGTH_WORDS or word in FORCES or word in TIMES else ""
 
 
+def _is_pressure(word):
+    """"kPa", "N/mm2", "kgf/cm^2"."""
+    force, _, area = word.partition("/")
+    return word in PRESSURES or (len(word) > 2 and word in {known.lower() for known in PRESSURES}) or _known_unit(force) in FORCES and re.fullmatch(r"[mcd]?m(\^?2|²)", area) is not None
+
+
 def column_name(name):
     """"Kraft [mN]", "x_mm", "Volume (mm^3)" and "z in mm" name units, "c_force[1]" does not."""
     name, unit, unknown = name.strip(), "", ""
     brackets = re.fullmatch(r"(.+)[\[(]([^\[(]*)[\])]", name, re.DOTALL)
-    if brackets and (_known_unit(brackets[2].strip()) or not re.search(r"\d", brackets[2])):
+    if brackets and (_known_unit(brackets[2].strip()) or _is_pressure(brackets[2].strip()) or not re.search(r"\d", brackets[2])):
         name, unknown = brackets[1], brackets[2].strip()
         unit = _known_unit(unknown)
     elif not brackets:
-        ends = (name.rpartition(mark) for mark in (" in ", "/", "_", " "))
-        name, unit = next(((before, known) for before, _, end in ends if before and (known := _known_unit(end.strip()))), (name, ""))
+        ends = [(before, end.strip()) for before, _, end in (name.rpartition(mark) for mark in (" in ", "/", "_", " ", "-", ".")) if before]
+        others = ((before, end) for before, end in ends if _is_pressure(end) and len(before) > 1 or end.lower() in FRACTIONS)
+        if known := next(((before, unit) for before, end in ends if (unit := _known_unit(end))), None):
+            name, unit = known
+        else:
+            name, unknown = next(others, (name, ""))
     return ColumnName(re.sub(r"[^a-z0-9]", "", name.translate(_LETTERS).lower()), unit, "" if unit else unknown)
+
+
+def other_quantity(name, wanted):
+    """Why a column of this name is none of the `wanted` quantity, "force" or "length", and the remedy; empty if the name does not say so."""
+    name = column_name(name) if isinstance(name, str) else name
+    quantity = name.quantity
+    if quantity not in ("a pressure", "a fraction"):
+        return ""
+    remedy = {("a pressure", "force"): "multiply by the area that it acts on, such as that of the plate",
+              ("a fraction", "force"): "multiply by the force that is 100 %", ("a fraction", "length"): "multiply by the length that is 100 %"}
+    says = f"[{name.unknown}], which is {quantity} and no" if name.unknown else f"{quantity}, which is no"
+    return f"a name says {says} {wanted}: {remedy.get((quantity, wanted), 'change the table')}, and name the column by the unit of the {wanted}"
 
 
 def columns_by_key(role, columns):

@@ -80,6 +80,8 @@ def import_plate(table, start, problems, programme=False):
     height = "displacement" if "displacement" in rows else "plate_z"
     if rows.lacks("top_force", height, *["time"] * programme) or not len(rows):
         return PlateRows()
+    rows.expect_quantity("force", ("top_force", "set_force"))
+    rows.expect_quantity("length", (height,))
     keys = rows.key if rows.keyed else np.arange(len(rows), dtype=float)
     floor = mapped.number("origin_z") * signed_column(mapped.word("plate_z"))[0] if height == "plate_z" else 0
     z = mapped.length_factor() * (rows.number(height) - floor)

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from .mapping import columns_of, signed_column
-from .names import TIMES, column_name
+from .names import TIMES, column_name, other_quantity
 from .problems import is_whole, number_text, quoted
 
 
@@ -98,6 +98,12 @@ class Rows:
         for key in missing:
             self.problems.add(self.map.files[0], f"must have a column for {key}, got none: name it in the mapping")
         return bool(missing)
+
+    def expect_quantity(self, quantity, keys):
+        """Columns whose names say another quantity than "force" or "length" are a problem, whatever unit the mapping states."""
+        for part, sign_and_name in ((self.parts[0], named) for key in keys if key in self for named in map(signed_column, self.map[key].words)):
+            if what := other_quantity(sign_and_name[1], quantity):
+                self.problems.add(part.file, f"{quoted(sign_and_name[1])} must be a {quantity}, got another quantity: {what}")
 
     def wanted(self):
         """Whether a row counts, by the column for `where`."""

@@ -120,11 +120,17 @@ def _names_of(headings, comment, format_, width):
     return names
 
 
+def _ends_in_separators(lines, separator, width):
+    """Whether lines of that many cells have nothing in the last one: neither a column's name nor, in any row, a value."""
+    rows = (cut(line.lstrip(" \t\r#") if line.lstrip(" \t\r")[:1] == "#" else line, separator) for line in lines)
+    return not any(cells[-1] for cells in rows if len(cells) == width)
+
+
 def parse_text(table, lines, form, problems):
     form = form or guess_form(lines)
     table.begin("text", lines, form)
     above = _lines_above(lines, form.separator)
-    headings, comment, format_, trailing, marks = [], [], [], False, {}
+    headings, comment, format_, trailing, marks = [], [], [], None, {}
     for number, line in enumerate(lines, 1):
         words = line.strip()
         if not words or problems.full or (words[0] == "#" and table.columns):
@@ -143,7 +149,7 @@ def parse_text(table, lines, form, problems):
             continue
         has_numbers = (not table.columns or not cells[-1]) and _numbers_in(cells, form.decimal) > 0
         if len(cells) > 1 and not cells[-1] and has_numbers:  # a separator at the end of the line
-            trailing = trailing or not table.columns
+            trailing = _ends_in_separators(lines, form.separator, len(cells)) if trailing is None else trailing
             cells = cells[:-1] if trailing else cells
         if not table.columns and (above > 0 or not has_numbers):
             headings.append(cells)
