@@ -223,6 +223,10 @@ void StepReference::add_forces(ReferenceContact& contact, const Body& a, const B
     if (mindlin > 0) contact.tangential = mindlin * mindlin_friction(limit, sliding, pair, elapsed, memory);
     if (mindlin < 1) contact.tangential += (1 - mindlin) * saturated_friction(limit, sliding, pair);
     contact.couple = rolling_couple(normal, a, b, pair, elapsed, memory);
+    const double shear = 8 * pair.shear_modulus * memory.contact_radius;
+    contact.spring_energy =
+        (mindlin * memory.spring.squaredNorm() + memory.rolling.squaredNorm() / std::pow(pair.radius, 2)) /
+        (2 * shear);
     contact.force = (pull.force - normal) * e + contact.tangential;
 }
 
@@ -268,25 +272,39 @@ void StepReference::displace_surfaces(const std::vector<std::vector<ReferenceCon
     }
 }
 
+StepReference::Accelerations StepReference::accelerations(
+    const std::vector<ReferenceContact>& contacts) const {
+    Accelerations of{std::vector<Vec3>(position.size(), Vec3::Zero()),
+                     std::vector<Vec3>(position.size(), Vec3::Zero())};
+    for (const ReferenceContact& c : contacts) {
+        const double m = mass(c.grain), inertia = 0.4 * m * radius_[c.grain] * radius_[c.grain];
+        of.linear[c.grain] += c.force / m;
+        of.angular[c.grain] += ((c.arm * c.direction).cross(c.tangential) + c.couple) / inertia;
+    }
+    for (std::size_t i = 0; i < position.size(); ++i) {
+        of.linear[i] -= drag_ * velocity[i];
+        of.linear[i].z() -= material_[i].excess_density / material_[i].density * 9.81;
+        of.angular[i] -= spin_drag_ * angular_velocity[i];
+    }
+    return of;
+}
+
 void StepReference::step() {
     const double dt = time_step_;
     std::vector<std::vector<ReferenceContact>> contacts(position.size());
+    std::vector<ReferenceContact> all;
     for (std::size_t i = 0; i < position.size(); ++i)
-        for (auto& [partner, remembered] : memory[i])
+        for (auto& [partner, remembered] : memory[i]) {
             contacts[i].push_back(contact_of(static_cast<int>(i), partner, dt, remembered));
-    displace_surfaces(contacts);
-    for (std::size_t i = 0; i < position.size(); ++i) {
-        const double m = mass(static_cast<int>(i)), inertia = 0.4 * m * radius_[i] * radius_[i];
-        Vec3 force = -drag_ * m * velocity[i], torque = Vec3::Zero();
-        force.z() -= material_[i].excess_density / material_[i].density * m * 9.81;
-        for (const ReferenceContact& c : contacts[i]) {
-            force += c.force;
-            torque += (c.arm * c.direction).cross(c.tangential) + c.couple;
+            all.push_back(contacts[i].back());
         }
-        velocity[i] += force / m * dt;
-        angular_velocity[i] += (torque / inertia - spin_drag_ * angular_velocity[i]) * dt;
+    displace_surfaces(contacts);
+    const Accelerations change = accelerations(all);
+    for (std::size_t i = 0; i < position.size(); ++i) {
+        velocity[i] += dt * change.linear[i];
+        angular_velocity[i] += dt * change.angular[i];
+        position[i] += velocity[i] * dt;
     }
-    for (std::size_t i = 0; i < position.size(); ++i) position[i] += velocity[i] * dt;
     plate_z_ += plate_velocity_ * dt;
 }
 
@@ -319,19 +337,24 @@ double StepReference::displacement_energy() const {
 Totals StepReference::totals() const {
     Totals totals;
     totals.wall_force.fill(Vec3::Zero());
+    // Velocities are half a step behind the positions.
+    const auto contacts = neighbours();
+    const Accelerations change = accelerations(contacts);
     for (std::size_t i = 0; i < position.size(); ++i) {
         const double m = mass(static_cast<int>(i));
-        totals.kinetic_energy += 0.5 * m * velocity[i].squaredNorm() +
-                                 0.5 * 0.4 * m * radius_[i] * radius_[i] * angular_velocity[i].squaredNorm();
+        const Vec3 now = velocity[i] + time_step_ / 2 * change.linear[i],
+                   spin = angular_velocity[i] + time_step_ / 2 * change.angular[i];
+        totals.kinetic_energy +=
+            0.5 * m * now.squaredNorm() + 0.5 * 0.4 * m * radius_[i] * radius_[i] * spin.squaredNorm();
     }
     const bool finite = law_[0].self[0] != 0;
     if (finite) totals.elastic_energy += displacement_energy();
-    for (const ReferenceContact& c : neighbours()) {
+    for (const ReferenceContact& c : contacts) {
         const bool wall = mcdem::is_wall(c.partner);
         // energy of the contact (half for a pair of grains), minus the work of the grain's surface
         // displacement
         totals.elastic_energy +=
-            (wall ? 1 : 0.5) * c.energy - (finite ? 1 : 0.5) * c.elastic * c.displacement;
+            (wall ? 1 : 0.5) * (c.energy + c.spring_energy) - (finite ? 1 : 0.5) * c.elastic * c.displacement;
         totals.deepest_overlap = std::max(totals.deepest_overlap,
                                           c.overlap / (radius_[c.grain] + (wall ? 0 : radius_[c.partner])));
         if (wall) totals.wall_force[static_cast<int>(mcdem::wall_of(c.partner))] -= c.force;

@@ -33,6 +33,7 @@ struct ReferenceContact {
     double contact_radius = 0;       ///< a [m]
     double elastic = 0;              ///< Hertz force including stiffening [N]
     double energy = 0;               ///< stored in the contact [J]
+    double spring_energy = 0;        ///< stored in the springs of friction and rolling resistance [J]
     double displacement = 0;         ///< displacement of the grain's own surface [m]
     double arm = 0;                  ///< centre to contact point, or to the probed surface point [m]
     Vec3 tangential = Vec3::Zero();  ///< friction on the grain [N]
@@ -68,6 +69,13 @@ public:
     /// All neighbours of all grains in the present state, touching or not.
     std::vector<ReferenceContact> neighbours() const;
     Totals totals() const;
+
+    /// Linear and angular acceleration of every grain by these contacts (of each grain, in any order), weight
+    /// and drag.
+    struct Accelerations {
+        std::vector<Vec3> linear, angular;
+    };
+    Accelerations accelerations(const std::vector<ReferenceContact>& contacts) const;
 
 private:
     struct Body {

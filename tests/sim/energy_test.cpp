@@ -46,12 +46,10 @@ public:
     double steps_per_oscillation() const {
         return 2.0 * (peaks_.back() - peaks_.front()) / (peaks_.size() - 1);
     }
-    /// Mean total energy between two maxima. Velocities are half a step behind, so the mean of two is the
-    /// velocity at the step.
+    /// Mean total energy between two maxima.
     double energy(int first_peak, int last_peak) const {
         double sum = 0;
-        for (std::size_t i = peaks_[first_peak]; i < peaks_[last_peak]; ++i)
-            sum += elastic_[i] + (kinetic_[i] + kinetic_[i + 1]) / 2;
+        for (std::size_t i = peaks_[first_peak]; i < peaks_[last_peak]; ++i) sum += elastic_[i] + kinetic_[i];
         return sum / (peaks_[last_peak] - peaks_[first_peak]);
     }
     /// Drift per oscillation, relative to the largest kinetic energy, from the means over the first and the

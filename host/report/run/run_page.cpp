@@ -15,6 +15,7 @@
 #include "metrics/programmes.h"
 #include "report/page/labels.h"
 #include "report/run/figure_values.h"
+#include "report/run/energy_table.h"
 #include "report/run/tables.h"
 
 namespace mcdem::inline report {
@@ -220,6 +221,8 @@ void add_tables(Page& page, const RunsOnPage& runs, const std::vector<Comparison
         page.table("Against " + runs.reference->label, table_of_comparisons(comparisons));
     for (const TextTable& table : tables_of_scans(with_programme(runs.settings, true)))
         page.table("Scans", table);
+    if (const TextTable energies = table_of_energies(runs.settings); !energies.rows.empty())
+        page.table("Energy budget", energies);
     const auto strokes = with_programme(runs.settings, false);
     if (strokes.empty()) return;
     page.table("Top force", table_of_models(model_table(strokes)));
