@@ -11,7 +11,8 @@
      omega dt = 2 sin(w/2) sqrt(1 - lambda R),   omega^2 = K/m
      lambda S / (cos(w/2) (1 - lambda R)^(3/2)) = C/(m omega)
    The left side of the second equation is the energy that the delay adds, the right side what damping
-   removes. The step may be as long as the largest omega dt of the phases at which damping removes more. */
+   removes. The step may be as long as the largest omega dt of the phases at which damping removes more.
+   With a negative gain, w = pi is unstable from omega dt = 2 sqrt(1 + lambda) on. */
 
 /* Constants of a phase w: 2 sin(w/2), R(w), S(w)/cos(w/2); 0.09 to 1.11 in factors of the eighth root of two.
    R = (10 cos w - 5 cos 3w + cos 5w)/6, S = 8/3 sin^5 w. */
@@ -67,7 +68,7 @@ INLINE lanes stable_phase(lanes gain, lanes damping) {
         stable = stable & AS_MASK(gain * phases[i].delay <= removed * left * root);
         longest = WHERE(stable, fmax(longest, phases[i].step * root), longest);
     }
-    return longest;
+    return fmin(longest, R(1.9) * sqrt(fmax(R(1) + gain, (lanes)(R(0)))));
 }
 
 /* Symmetric tensor. */

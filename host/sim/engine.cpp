@@ -97,6 +97,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
         time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));
         shortening_.push_back(0);
         extra_shortening_.push_back(0);
+        keeps_step_.push_back(0);
         excess_compliance_.push_back(mcdem::excess_compliance(replicas_[r], packings[r].size()));
         reach_.push_back(list_reach(replicas_[r], packings[r]));
         std::visit(
@@ -409,7 +410,8 @@ std::vector<IntervalResult> Engine::finish_interval() {
                 rebuild_[r] = made[r] < intervals[r].steps ||
                               plate_moved_[r] > margin_of_walls(replicas_[r]) * limit ||
                               !(reports[r].moved_squared <= own_limit * own_limit);
-                shortening_[r] = shortening(time_step_[r], result.step_rate, shortening_[r]);
+                if (!keeps_step_[r])
+                    shortening_[r] = shortening(time_step_[r], result.step_rate, shortening_[r]);
             }
         },
         device_replicas_);

@@ -106,6 +106,8 @@ public:
     /// Positions and contacts after the last interval of `replica`.
     ReplicaState state(int replica) const;
     Precision precision() const { return build_.precision; }
+    /// For tests: the time step of the replica is not shortened from now on.
+    void keep_time_step(int replica) { keeps_step_[static_cast<std::size_t>(replica)] = 1; }
     /// For tests: sets velocities by the user's grain numbers.
     void set_velocities(int replica, const std::vector<Vec3>& velocity,
                         const std::vector<Vec3>& angular_velocity);
@@ -153,6 +155,7 @@ private:
     std::vector<double> time_step_;                       ///< of the scene [s]
     std::vector<int> shortening_;                         ///< of the time step (device_replica.h)
     std::vector<int> extra_shortening_;                   ///< of it, by shorten()
+    std::vector<char> keeps_step_;                        ///< by keep_time_step()
     std::vector<double> skin_;                            ///< [m]
     std::vector<std::vector<double>> excess_compliance_;  ///< E/E_i - 1 by the user's grain numbers
     std::vector<char> rebuild_;                           ///< 1: the neighbour list must be rebuilt

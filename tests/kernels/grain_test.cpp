@@ -114,30 +114,30 @@ TEST(WaySinceListed, IsThatInTheDeformedCell) {
     std::copy(std::begin(start), std::end(start), replica.deformation);
     std::copy(std::begin(rate), std::end(rate), replica.deformation_rate);
     Uniform uniform(6);
-    std::vector<float> tracks;  // of each grain 16 numbers: its track of 8, its position, others
-    for (int i = 0; i < grains * slots; ++i) tracks.push_back(static_cast<float>(uniform(-1, 1)));
+    std::vector<float> tracks;  // of each grain 48 numbers: its track of 12, its position, others
+    for (int i = 0; i < 3 * grains * slots; ++i) tracks.push_back(static_cast<float>(uniform(-1, 1)));
     for (const int container : {CONTAINER_BOX, CONTAINER_CELL})
         for (const KernelBuild& way : ways()) {
             replica.container = container;
             const auto found = mapped_slots(R"(
                 const slots grain = first + LANE_NUMBERS;
                 const Grain at = {.replica = replica, .first = first, .elapsed = R(0.25)};
-                const lanes3 position = {gather(in, grain * SLOTS + 8), gather(in, grain * SLOTS + 9),
-                                         gather(in, grain * SLOTS + 10)};
-                const lanes3 way = way_since_listed(at, (global const Track*)in, 2 * grain, position);
+                const lanes3 position = {gather(in, grain * 48 + 12), gather(in, grain * 48 + 13),
+                                         gather(in, grain * 48 + 14)};
+                const lanes3 way = way_since_listed(at, (global const Track*)in, 4 * grain, position);
                 if (!IS_LEADER) return;
                 WRITE(0, 0, way.x);
                 WRITE(0, 1, way.y);
                 WRITE(0, 2, way.z);)",
-                                            replica, tracks, 1, 3, way);
+                                            replica, tracks, 3, 3, way);
             double f[6];
             for (int k = 0; k < 6; ++k) f[k] = start[k] + 0.25 * rate[k];
             Eigen::Matrix3d deformation = Eigen::Matrix3d::Identity();
             if (container == CONTAINER_CELL) deformation << f[0], f[3], f[4], 0, f[1], f[5], 0, 0, f[2];
             for (int grain = 0; grain < grains; ++grain) {
                 const auto vector = [](const float* x) { return Vec3(x[0], x[1], x[2]); };
-                const float* row = &tracks[grain * slots];
-                const Vec3 expected = deformation * (vector(row + 8) - vector(row));
+                const float* row = &tracks[grain * slots * 3];
+                const Vec3 expected = deformation * (vector(row + 12) - vector(row));
                 EXPECT_LT((vector(&found[grain * slots * 3]) - expected).norm(), 1e-6);
             }
         }

@@ -102,7 +102,8 @@ struct Mode {
 Mode translation(const Start& start, const mcdem::ReplicaState& state) {
     const double E = start.replica.grains.youngs_modulus, nu = start.replica.grains.poisson_ratio;
     const double R = start.packing.diameter[0] / 2, modulus = E / (1 - nu * nu);
-    const auto law = mcdem::surface_law(start.replica.contact.model, nu, start.replica.contact.gamma, 1);
+    const auto law = mcdem::surface_law(start.replica.contact.model, nu, start.replica.contact.gamma,
+                                        start.replica.effects.finite_strain);
     Grain grain{R, E, nu, {}};
     for (const auto& contact : state.contacts) {
         const Vec3 direction = (contact.point - state.position[0]).normalized();
@@ -138,7 +139,8 @@ Mode translation(const Start& start, const mcdem::ReplicaState& state) {
     return mode;
 }
 
-// The kernels neglect that contact radii change with the force: 10 % of the step.
+// Phases are in factors of 1.09. The kernels neglect that contact radii change with the force: 2 % of the
+// step.
 TEST(StableStep, OfAGrainBetweenPlatesFollowsFromItsGain) {
     for (const bool six : {false, true})
         for (const ContactModel model : all_models)
@@ -147,14 +149,21 @@ TEST(StableStep, OfAGrainBetweenPlatesFollowsFromItsGain) {
                 const Start start = held_grain(model, 0.45, overlap, six);
                 Batch batch(build(finest()), start);
                 const auto result = batch.advance(200, 200);
+                const bool half_space =
+                    model == ContactModel::elastic_half_space || model == ContactModel::mc_dem;
+                if (half_space && six && overlap > 0.1) continue;  // no static solution
                 ASSERT_EQ(result[0].status, 0) << name(model);
                 const Mode mode = translation(start, batch.engine().state(0));
                 const double mass = 4e3 / 3 * std::numbers::pi * 1e-6;
                 const double frequency = std::sqrt(mode.stiffness / mass);
                 const double expected =
                     longest_stable(mode.gain, mode.damping / (mass * frequency)) / frequency;
-                EXPECT_NEAR(1 / result[0].step_rate / std::min(expected, 1.06 / frequency), 0.93, 0.11)
-                    << name(model) << ' ' << overlap << (six ? " six" : " two") << " gain " << mode.gain;
+                const std::string where =
+                    fmt::format("{} {} {} gain {} damping {} truth {} found {}", name(model), overlap,
+                                six ? "six" : "two", mode.gain, mode.damping / (mass * frequency),
+                                expected * frequency, frequency / result[0].step_rate);
+                EXPECT_LT(1 / result[0].step_rate, 1.02 * expected) << where;
+                if (mode.gain > 0) EXPECT_GT(1 / result[0].step_rate, 0.83 * expected) << where;
             }
 }
 

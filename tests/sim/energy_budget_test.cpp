@@ -60,7 +60,7 @@ TEST(EnergyBudget, WorkOfThePlateIsStored) {
     const auto terms = advanced(batch, budget, steps, -0.002 / (steps * dt));
     const double modulus = 1e5 / (1 - 0.09), overlap = 0.001;
     const double stored = 2 * 8.0 / 15 * modulus * std::sqrt(radius) * std::pow(overlap, 2.5);
-    EXPECT_NEAR(terms.wall_work / stored, 1, 2e-3);  // the plate is not infinitely slow
+    EXPECT_NEAR((terms.wall_work - terms.damping_loss) / stored, 1, 1e-3);
     EXPECT_LT(std::abs(terms.energy_error), 1e-5 * stored);
     EXPECT_GT(terms.damping_loss, 0);
 }
@@ -98,7 +98,9 @@ TEST(EnergyBudget, FrictionTakesTwoSeventhsUntilAGrainRolls) {
         const auto terms = advanced(batch, budget, 4000);
         const double before = mass * 0.01 / 2;
         EXPECT_NEAR(terms.friction_loss / before, 2.0 / 7, 0.01) << mcdem::name(law);
-        EXPECT_LT(std::abs(terms.energy_error), 3e-3 * before) << mcdem::name(law);
+        // Friction follows the motion by a step: the first one's work is missing.
+        const double of_a_step = 0.5 * mass * 9.81 * 0.1 * batch.engine().time_step(0);
+        EXPECT_LT(std::abs(terms.energy_error), 1.5 * of_a_step) << mcdem::name(law);
     }
 }
 
@@ -116,7 +118,7 @@ TEST(EnergyBudget, WeightAndDragOfAFreeGrain) {
     ASSERT_GT(fallen, 0.01);
     EXPECT_NEAR(terms.weight_work / (mass / 2 * 9.81 * fallen), 1, 1e-4 + rounding());
     EXPECT_GT(terms.drag_loss, 0.05 * terms.weight_work);
-    EXPECT_LT(std::abs(terms.energy_error), 1e-4 * terms.weight_work);
+    EXPECT_LT(std::abs(terms.energy_error), 3e-4 * terms.weight_work);  // first order in drag times step
 }
 
 // In a sheared cell the work of the motion is stored or dissipated.
@@ -131,8 +133,12 @@ TEST(EnergyBudget, ClosesInADeformedCell) {
     interval.steps = 9;
     interval.strain_rate = {0.2, 0, -0.1, 0.3, 0.1, 0};
     for (int k = 0; k < 60; ++k) {
-        const double time = 9 * batch.engine().time_step(0);
-        budget.add(batch.engine().advance({interval}).front());
+        const double step = batch.engine().time_step(0);
+        interval.steps = std::min(9, batch.engine().max_interval(0, interval));
+        const auto result = batch.engine().advance({interval}).front();
+        ASSERT_EQ(result.status, 0);
+        budget.add(result);
+        const double time = step * result.steps;
         for (std::size_t q = 0; q < 6; ++q) interval.strain[q] += interval.strain_rate[q] * time;
     }
     const auto& terms = budget.terms();

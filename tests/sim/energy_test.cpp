@@ -13,7 +13,6 @@
 namespace reference {
 namespace {
 
-/// Short enough that it is not shortened automatically.
 constexpr double time_steps[] = {0.04, 0.02, 0.01};
 constexpr int oscillations = 50;
 constexpr double rounding = 1e-5;  ///< of the mean energy over some oscillations
@@ -67,6 +66,7 @@ private:
 
 std::vector<Record> ring(const std::vector<Start>& starts) {
     Batch batch(build(Precision::double_precision), starts);
+    for (std::size_t r = 0; r < starts.size(); ++r) batch.engine().keep_time_step(static_cast<int>(r));
     std::vector<Record> records(starts.size());
     for (bool any = true; any;) {
         std::vector<mcdem::StepInterval> intervals;
