@@ -56,7 +56,7 @@ const Key table[] = {
     {"contact.friction_law", replica<&Replica::contact, &ContactLaw::friction_law>, "", none, each, "saturated: mu times the normal force, against sliding; mindlin: a tangential spring with history, limited to that force"},
     {"contact.sliding_velocity", replica<&Replica::contact, &ContactLaw::sliding_velocity>, "m/s", above_zero_to(100), each, "sliding velocity below which saturated friction decreases to zero"},
 
-    {"packing.file", &follow<&Settings::packing_file>, "", none, each, "LIGGGHTS/LAMMPS data file or text dump, Yade text file (x y z r), run.h5, or .csv with columns x_m,y_m,z_m,diameter_m, such as an experiment's grains.csv. A column species or type gives the [[species]] of each grain, by name or by number from 1. Path relative to the scene file (in --set: to the current folder). Default: the packing is generated"},
+    {"packing.file", &follow<&Settings::packing_file>, "", none, each, "LIGGGHTS/LAMMPS data file or text dump, Yade text file (x y z r), run.h5, or .csv with columns x_m,y_m,z_m,diameter_m, such as an experiment's grains.csv. A column species or type gives the [[species]] of each grain, by name or by number from 1; columns vx_m_s,vy_m_s,vz_m_s and spin_x_1_s,spin_y_1_s,spin_z_1_s of a .csv their initial velocities and spins. Path relative to the scene file (in --set: to the current folder). Default: the packing is generated"},
     {"packing.frame", &follow<&Settings::packing_frame>, "", between(-1, 2e9), each, "timestep of a dump, or frame of a grains.csv or run.h5, given as packing.file; -1: the last of a dump, the first of the others"},
     {"packing.count", generated<&GeneratedPacking::count>, "", between(1, 1e7), each, "number of generated grains"},
     {"packing.diameter_mean", generated<&GeneratedPacking::diameter_mean>, "m", grain_size, each, "mean of a normal distribution, before truncation"},
@@ -82,7 +82,7 @@ const Key table[] = {
     {"protocol.settle_drag", replica<&Replica::protocol, &Protocol::settle_drag>, "1/s", between(0, 1e6), each, "drag on velocities and spins while the plate stands still, in addition to grains.drag; a step removes at most half of a velocity"},
     {"protocol.pause", replica<&Replica::protocol, &Protocol::pause>, "s", between(0, 1e6), each, "above 0: at each scan the plate stands for this time without any settling, as in an experiment that pauses for a scan; between scans its velocity is half a sine with the mean plate.speed; needs stop_at_scans"},
     {"protocol.hold", replica<&Replica::protocol, &Protocol::hold>, "s", between(0, 1e6), each, "above 0: the plate stands at plate.end for this time before it goes back, without any settling; the scan there is taken at the end"},
-    {"protocol.relax_time", replica<&Replica::protocol, &Protocol::relax_time>, "s", between(0, 1e6), each, "maximum relaxation time before the first stroke, with the plate at plate.start"},
+    {"protocol.relax_time", replica<&Replica::protocol, &Protocol::relax_time>, "s", between(0, 1e6), each, "maximum relaxation time before the first stroke, with the plate at plate.start; 0: none, and initial velocities are kept"},
     {"protocol.scan_at_start", replica<&Replica::protocol, &Protocol::scan_at_start>, "", none, each, "record a scan (frame 0) of the relaxed packing before the first stroke; needed as the start of an experiment made from the run"},
     {"protocol.force_threshold", replica<&Replica::protocol, &Protocol::force_threshold>, "N", between(0, 1e9), each, "contacts with smaller forces are ignored in Z and in the mean force"},
 
