@@ -1,4 +1,5 @@
-// A packing: positions and diameters of grains. The index in the vectors is the user's grain number.
+// A packing: positions and diameters of grains, and their initial motion. The index in the vectors is the
+// user's grain number.
 #pragma once
 #include <array>
 #include <string>
@@ -14,6 +15,8 @@ struct Packing {
     std::vector<double> diameter;                 ///< [m]
     std::vector<int> species = {};                ///< from 0; empty if there is one species, or it is unknown
     std::vector<std::string> species_names = {};  ///< names or numbers, as in the file
+    std::vector<Vec3> velocity = {};              ///< half a step before the start [m/s]; empty: at rest
+    std::vector<Vec3> angular_velocity = {};      ///< the same [1/s]
     std::size_t size() const { return position.size(); }
     std::size_t species_of(std::size_t grain) const {
         return species.empty() ? 0 : static_cast<std::size_t>(species[grain]);

@@ -35,8 +35,10 @@ std::string digest_of(const std::vector<Packing>& packings) {
     for (const Packing& packing : packings) {
         const auto size = static_cast<double>(packing.size());
         digest.add(std::span(&size, 1));
-        if (packing.size() > 0) digest.add(std::span(packing.position.front().data(), 3 * packing.size()));
+        for (const auto* vectors : {&packing.position, &packing.velocity, &packing.angular_velocity})
+            for (const Vec3& vector : *vectors) digest.add(std::span(vector.data(), 3));
         digest.add(packing.diameter);
+        digest.add(std::vector<double>(packing.species.begin(), packing.species.end()));
     }
     return digest.hex();
 }

@@ -15,6 +15,7 @@ void bind_results(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
 void bind_diagnosis(pybind11::module_& module);
 void bind_comparison(pybind11::module_& module);
+void bind_path(pybind11::module_& module);
 
 /// Converts values of scene keys to int, float, bool or str; None for an empty text.
 pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);

@@ -45,4 +45,5 @@ PYBIND11_MODULE(_engine, module) {
     mcdem::bind_simulation(module);
     mcdem::bind_diagnosis(module);
     mcdem::bind_comparison(module);
+    mcdem::bind_path(module);
 }

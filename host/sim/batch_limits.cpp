@@ -18,8 +18,7 @@ namespace mcdem::inline sim {
 namespace {
 
 constexpr std::uint64_t max_int = std::numeric_limits<int>::max();
-constexpr double max_steps = 1e11;       // times 1e7 grains it fits into a long
-constexpr double min_time_step = 1e-30;  // [s] representable in single precision
+constexpr double max_steps = 1e11;  // times 1e7 grains it fits into a long
 
 /// Advice for a batch of this many replicas if only the fraction `part` of it fits.
 std::string remedy(std::size_t replicas, double part) {
@@ -165,12 +164,25 @@ void expect_countable_steps(const Replica& replica, double time_step) {
                         max_steps, steps, seconds, time_step));
 }
 
+void expect_slow_grains(const Replica& replica, const PackingSize& size, double time_step) {
+    const double most = 0.5 * replica.numerics.skin * size.smallest / 2;
+    if (size.fastest * time_step <= most) return;
+    throw InputError(fmt::format(
+        "packing.file: initial velocities, and spins times the radius, must be at most {:.6g} m/s, got "
+        "{:.6g}: no grain may move by more than {:.3g} m, half of numerics.skin times the smallest radius, "
+        "in a time step of {:.3g} s (lower numerics.time_step)",
+        most / time_step, size.fastest, most, time_step));
+}
+
 void expect_runnable(const Device& device, const Scene& scene) {
     const auto sizes = packing_sizes(scene.replicas);
     expect_within_limits(device.info(), kernel_build(device, scene.precision, scene.slots), scene.replicas,
                          sizes);
-    for (std::size_t r = 0; r < sizes.size(); ++r)
-        expect_countable_steps(scene.replicas[r], time_step(scene.replicas[r], sizes[r].smallest / 2));
+    for (std::size_t r = 0; r < sizes.size(); ++r) {
+        const double step = time_step(scene.replicas[r], sizes[r].smallest / 2);
+        expect_countable_steps(scene.replicas[r], step);
+        expect_slow_grains(scene.replicas[r], sizes[r], step);
+    }
 }
 
 }  // namespace mcdem::sim

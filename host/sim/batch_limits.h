@@ -8,6 +8,9 @@
 
 namespace mcdem::inline sim {
 
+/// Representable in single precision [s].
+inline constexpr double min_time_step = 1e-30;
+
 /// "3.78 MB"
 std::string memory_text(std::uint64_t bytes);
 
@@ -29,7 +32,11 @@ void expect_within_limits(const DeviceInfo& device, const KernelBuild& build,
 /// Throws InputError if the protocol has too many steps to count, or the steps are too short.
 void expect_countable_steps(const Replica& replica, double time_step);
 
-/// Both checks, as far as possible before packings are generated.
+/// Throws InputError if a grain would move at the start farther in a time step [s] than neighbour lists of
+/// the smallest grains allow.
+void expect_slow_grains(const Replica& replica, const PackingSize& size, double time_step);
+
+/// All checks, as far as possible before packings are generated.
 void expect_runnable(const Device& device, const Scene& scene);
 
 }  // namespace mcdem::sim

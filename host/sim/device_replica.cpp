@@ -18,11 +18,6 @@ namespace {
 
 using std::numbers::pi;
 
-double mean_radius(const Packing& packing) {
-    return 0.5 * std::accumulate(packing.diameter.begin(), packing.diameter.end(), 0.0) /
-           static_cast<double>(packing.size());
-}
-
 template <class DeviceReplica>
 void set_effects(DeviceReplica& d, const Replica& replica) {
     const Effects& e = replica.effects;
@@ -143,6 +138,11 @@ double time_step_of(const Replica& replica, const GrainMaterial& material, doubl
 }
 
 }  // namespace
+
+double mean_radius(const Packing& packing) {
+    return 0.5 * std::accumulate(packing.diameter.begin(), packing.diameter.end(), 0.0) /
+           static_cast<double>(packing.size());
+}
 
 double list_reach(const Replica& replica, const Packing& packing) {
     return list_reach(replica.numerics, 2 * mean_radius(packing),

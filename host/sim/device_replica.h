@@ -25,6 +25,8 @@ int shortening(double time_step, double step_rate, int now);
 double shortened(double time_step, int shortening);
 inline constexpr int max_shortening = 40;
 
+double mean_radius(const Packing& packing);  ///< [m]
+
 /// Largest distance between centres in a neighbour list [m].
 double list_reach(const Replica& replica, const Packing& packing);
 

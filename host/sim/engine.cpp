@@ -126,6 +126,10 @@ void Engine::upload_packings(const std::vector<Packing>& packings) {
             const int grain = layout_.order[r][k];
             double* at = &values[reals_of_motion * (layout_.first_grain[r] + k)];
             for (int axis = 0; axis < 3; ++axis) at[axis] = packings[r].position[grain][axis];
+            for (int axis = 0; axis < 3 && !packings[r].velocity.empty(); ++axis)
+                at[4 + axis] = packings[r].velocity[grain][axis];
+            for (int axis = 0; axis < 3 && !packings[r].angular_velocity.empty(); ++axis)
+                at[8 + axis] = packings[r].angular_velocity[grain][axis];
             at[3] = 0.5 * packings[r].diameter[grain];
             at[7] = excess_compliance_[r][grain];
             at[11] = static_cast<double>(packings[r].species_of(grain));

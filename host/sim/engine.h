@@ -54,6 +54,18 @@ struct ReplicaState {
     std::vector<Contact> contacts;
 };
 
+/// Motion of the grains of a replica at one time, in order of the user's grain numbers.
+struct GrainMotion {
+    std::vector<Vec3> position, velocity, angular_velocity;  ///< [m], [m/s], [1/s]
+};
+
+/// Sum of the contact forces on each grain, and their torque about its centre.
+struct GrainForces {
+    std::vector<Vec3> force, torque;  ///< [N], [N m]
+    double deepest_overlap = 0;       ///< corrected overlap over the sum of radii
+    int status = 0;                   ///< STATUS_* bits of the contacts
+};
+
 /// Raw data of adjacent replicas from which states are computed: rows of grains and of slots in the device's
 /// order. The device copies them while the host goes on.
 struct Readings {
@@ -69,7 +81,7 @@ std::size_t enough_replicas(const DeviceInfo& device, const KernelBuild& build);
 
 class Engine {
 public:
-    /// `replicas[r]` starts from `packings[r]` at rest.
+    /// `replicas[r]` starts from `packings[r]`, with its velocities.
     Engine(Device& device, const KernelBuild& build, std::vector<Replica> replicas,
            std::vector<Packing> packings);
 
@@ -112,6 +124,11 @@ public:
     void set_velocities(int replica, const std::vector<Vec3>& velocity,
                         const std::vector<Vec3>& angular_velocity);
 
+    /// Contact forces of a replica whose grains move as prescribed, with the plate at rest at its start. The
+    /// contacts' memory advances by one time step of length `duration` [s], in which the grains have the
+    /// velocities of `motion`; with 0 it does not advance.
+    GrainForces forces_at(int replica, const GrainMotion& motion, double duration);
+
     /// Everything that is needed to continue the run bit for bit, as named byte arrays.
     std::map<std::string, std::vector<std::byte>> save();
     /// Throws RunError if `saved` does not belong to this batch.
@@ -145,6 +162,9 @@ private:
                               std::size_t count) const;
     Readings begin_reading(int first_replica, int last_replica) const;
     ReplicaState state(int replica, const Readings& readings) const;
+    GrainForces forces(int replica, const std::vector<Vec3>& position) const;
+    void write_motion(int replica, const GrainMotion& motion);
+    Vec3 direction(int replica, const std::vector<Vec3>& position, int grain, int partner) const;
     std::vector<Contact> contacts(int replica, const std::vector<Vec3>& position,
                                   const Readings& readings) const;
 

@@ -170,6 +170,21 @@ ReplicaState Engine::state(int replica, const Readings& read) const {
     return state;
 }
 
+/// Unit vector from the centre of a grain to its partner, a number as in the field Partner.
+Vec3 Engine::direction(int replica, const std::vector<Vec3>& position, int grain, int partner) const {
+    const Box box = deformed(replicas_[replica].box, strain_[replica]);
+    if (partner >= 0) {
+        const int other = layout_.order[replica][partner - layout_.first_grain[replica]];
+        return apart(box, position[grain], position[other]).normalized();
+    }
+    const int wall = WALL_PARTNER(0) - partner;
+    if (static_cast<Wall>(wall) == Wall::plate)
+        return plate_face(replicas_[replica], plate_z_[replica]).normal();
+    if (is_cylinder(box) && static_cast<Wall>(wall) == curved_wall)
+        return from_axis(box, position[grain]).normalized();
+    return (wall % 2 ? 1 : -1) * Vec3::Unit(wall / 2);
+}
+
 std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& position,
                                       const Readings& read) const {
     const auto& order = layout_.order[replica];
@@ -184,27 +199,19 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
     const std::size_t row = build_.lanes * slots;  // length of a row of forces, see kernels/measure.cl
     const int* const partner = reinterpret_cast<const int*>(read.partner.data()) + first;
     const PlateFace plate = plate_face(replicas_[replica], plate_z_[replica]);
-    const Box box = deformed(replicas_[replica].box, strain_[replica]);
     std::vector<Contact> found;
     for (std::size_t slot = 0; slot < count; ++slot) {
         if (!(overlap[slot] > 0)) continue;
         Contact contact;
         contact.grain = order[build_.grain_of_slot(slot)];
-        Vec3 direction;
         if (partner[slot] < NO_PARTNER) {
-            const int wall = WALL_PARTNER(0) - partner[slot];
-            contact.partner = wall_partner(static_cast<Wall>(wall));
-            direction = Vec3::Zero();
-            direction[wall / 2] = wall % 2 ? 1 : -1;
-            if (static_cast<Wall>(wall) == Wall::plate) direction = plate.normal();
-            if (is_cylinder(box) && static_cast<Wall>(wall) == curved_wall)
-                direction = from_axis(box, position[contact.grain]).normalized();
+            contact.partner = wall_partner(static_cast<Wall>(WALL_PARTNER(0) - partner[slot]));
         } else {
             contact.partner = order[partner[slot] - layout_.first_grain[replica]];
             if (contact.partner < contact.grain) continue;  // listed by the other grain
-            direction = apart(box, position[contact.grain], position[contact.partner]).normalized();
         }
-        contact.point = position[contact.grain] + arm[slot] * direction;
+        contact.point =
+            position[contact.grain] + arm[slot] * direction(replica, position, contact.grain, partner[slot]);
         if (contact.partner == wall_partner(Wall::plate)) contact.point = plate.foot(position[contact.grain]);
         const double* const along_x = &force[slot / row * 3 * row + slot % row];
         contact.force = {along_x[0], along_x[row], along_x[2 * row]};
@@ -219,15 +226,21 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
 
 void Engine::set_velocities(int replica, const std::vector<Vec3>& velocity,
                             const std::vector<Vec3>& angular_velocity) {
+    write_motion(replica, {{}, velocity, angular_velocity});
+}
+
+/// Without positions the grains stay where they are.
+void Engine::write_motion(int replica, const GrainMotion& motion) {
     const auto& order = layout_.order[replica];
     const std::size_t first = reals_of_motion * std::size_t(layout_.first_grain[replica]);
-    auto motion = read_reals(fields_.motion.copies[0], first, reals_of_motion * order.size());
-    for (std::size_t k = 0; k < order.size(); ++k)
-        for (int axis = 0; axis < 3; ++axis) {
-            motion[reals_of_motion * k + 4 + axis] = velocity[order[k]][axis];
-            motion[reals_of_motion * k + 8 + axis] = angular_velocity[order[k]][axis];
-        }
-    write_reals(fields_.motion.copies[0], first, motion);
+    auto values = read_reals(fields_.motion.copies[0], first, reals_of_motion * order.size());
+    const auto put = [&](const std::vector<Vec3>& vectors, std::size_t place) {
+        for (std::size_t k = 0; k < order.size() && !vectors.empty(); ++k)
+            for (int axis = 0; axis < 3; ++axis)
+                values[reals_of_motion * k + place + axis] = vectors[order[k]][axis];
+    };
+    put(motion.position, 0), put(motion.velocity, 4), put(motion.angular_velocity, 8);
+    write_reals(fields_.motion.copies[0], first, values);
 }
 
 std::map<std::string, std::vector<std::byte>> Engine::save() {

@@ -176,7 +176,8 @@ bool ProtocolRunner::is_smooth() const {
 }
 
 double ProtocolRunner::drag() const {
-    if (pauses()) return 0;
+    const bool does_not_relax = state_.stage == Stage::relax && protocol_.relax_time == 0;
+    if (pauses() || does_not_relax) return 0;
     const double wanted = by_force()    ? force_control_.drag(state_.control, set_force())
                           : by_stress() ? cell_->drag(state_.cell, stress())
                                         : HUGE_VAL;

@@ -14,6 +14,7 @@
 #include "scene/packing/true_grains.h"
 #include "sim/averages.h"
 #include "sim/batch_limits.h"
+#include "sim/device_replica.h"
 
 namespace mcdem::inline sim {
 namespace {
@@ -114,7 +115,10 @@ std::string imbalance(const IntervalResult& result, double weight) {
 std::vector<Packing> true_packings(const std::vector<Replica>& replicas, std::vector<Packing> stated) {
     for (std::size_t r = 0; r < stated.size(); ++r)
         stated[r] = true_packing(replicas[r], std::move(stated[r]));
-    for (std::size_t r = 0; r < stated.size(); ++r) expect_room(replicas[r], stated[r]);
+    for (std::size_t r = 0; r < stated.size(); ++r) {
+        expect_room(replicas[r], stated[r]);
+        expect_slow_grains(replicas[r], size_of(stated[r]), time_step(replicas[r], stated[r]));
+    }
     return stated;
 }
 

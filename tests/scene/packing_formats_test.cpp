@@ -125,6 +125,29 @@ TEST(PackingOfGrainsCsv, IsOneFrame) {
                 ElementsAre(HasSubstr("must not be packed")));
 }
 
+TEST(PackingOfCsv, MayHaveVelocitiesAndSpins) {
+    const auto read = [](const std::string& text) { return read_csv_packing(text, "t.csv"); };
+    const Packing moving = read(
+        "spin_z_1_s,vx_m_s,x_m,y_m,z_m,diameter_m,spin_x_1_s,vz_m_s,vy_m_s,spin_y_1_s\n"
+        "9,1,0.1,0.2,0.3,0.01,7,-3,2e-1,8\n-9,-1,0.1,0.2,0.5,0.01,-7,3,0,-8\n");
+    EXPECT_THAT(moving.velocity, ElementsAre(Vec3(1, 0.2, -3), Vec3(-1, 0, 3)));
+    EXPECT_THAT(moving.angular_velocity, ElementsAre(Vec3(7, 8, 9), Vec3(-7, -8, -9)));
+    const Packing spinning = read("x_m,y_m,z_m,diameter_m,spin_x_1_s,spin_y_1_s,spin_z_1_s\n0,0,0,1,1,2,3\n");
+    EXPECT_TRUE(spinning.velocity.empty());
+    EXPECT_THAT(spinning.angular_velocity, ElementsAre(Vec3(1, 2, 3)));
+    const Packing resting = read("x_m,y_m,z_m,diameter_m,vx\n0,0,0,1,5\n");
+    EXPECT_TRUE(resting.velocity.empty() && resting.angular_velocity.empty());
+    EXPECT_THAT(problems_of([&] { read("x_m,y_m,z_m,diameter_m,vx_m_s,vy_m_s,vz_m_s\n0,0,0,1,1,inf,x\n"); }),
+                ElementsAre("t.csv:2: vy_m_s must be a finite number [m/s], got \"inf\"",
+                            "t.csv:2: vz_m_s must be a finite number [m/s], got \"x\""));
+    EXPECT_THAT(
+        problems_of([&] { read("x_m,y_m,z_m,diameter_m,vx_m_s,spin_y_1_s\n0,0,0,1,1,1\n"); }),
+        ElementsAre("t.csv: the header must name vx_m_s, vy_m_s and vz_m_s together or not at all, "
+                    "got 1 of them",
+                    "t.csv: the header must name spin_x_1_s, spin_y_1_s and spin_z_1_s together or not "
+                    "at all, got 1 of them"));
+}
+
 TEST(PackingFrame, IsAKeyOfScenes) {
     const TestFolder folder;
     folder.write("grains.dump", two_frames);

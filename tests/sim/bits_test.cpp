@@ -29,6 +29,9 @@ Start squeezed_lattice(int kind) {
                                  {"b", {8e4, 0.3, 2000, 900, 0.6, 0.9}}};
         for (int i = 0; i < counts[kind]; ++i) start.packing.species.push_back(i % 2);
     }
+    Uniform uniform(kind);
+    if (kind % 3 == 0) start.packing.velocity = uniform.vectors(start.packing.size(), 0.05);
+    if (kind % 2 == 0) start.packing.angular_velocity = uniform.vectors(start.packing.size(), 5);
     return start;
 }
 

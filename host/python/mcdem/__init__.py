@@ -2,7 +2,7 @@
 import importlib
 
 __all__ = ["Failure", "Recording", "Run", "Scene", "__version__", "calibrate", "compare", "converge", "devices", "diagnose",
-           "export", "read", "report", "run", "simulate"]
+           "export", "forces_along", "read", "report", "run", "simulate"]
 
 
 def __getattr__(name):

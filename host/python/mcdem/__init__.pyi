@@ -4,7 +4,7 @@ from os import PathLike
 from typing import Any, Literal, TypedDict, overload
 
 import numpy
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 Path = str | PathLike[str]
@@ -232,6 +232,15 @@ def run(
     device: str = "",
     progress: Callable[[float], object] | None = None,
 ) -> Run: ...
+def forces_along(
+    scene: Scene,
+    time: ArrayLike,
+    position: ArrayLike,
+    velocity: ArrayLike | None = None,
+    spin: ArrayLike | None = None,
+    *,
+    device: str = "",
+) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64]]: ...
 def read(
     path: Path, *, what: Literal["everything", "observables", "positions", "contacts"] = "everything"
 ) -> Run: ...

@@ -114,7 +114,11 @@ std::vector<std::string> packing_problems(const Packing& packing, const Box& box
 }
 
 PackingSize size_of(const Packing& packing) {
-    return {packing.size(), packing.size() == 0 ? 0 : *std::ranges::min_element(packing.diameter)};
+    PackingSize size{packing.size(), packing.size() == 0 ? 0 : *std::ranges::min_element(packing.diameter)};
+    for (const Vec3& velocity : packing.velocity) size.fastest = std::max(size.fastest, velocity.norm());
+    for (std::size_t i = 0; i < packing.angular_velocity.size(); ++i)
+        size.fastest = std::max(size.fastest, packing.diameter[i] / 2 * packing.angular_velocity[i].norm());
+    return size;
 }
 
 std::vector<PackingSize> packing_sizes(const std::vector<Replica>& replicas) {

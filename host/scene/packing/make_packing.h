@@ -14,6 +14,7 @@ namespace mcdem::inline scene {
 struct PackingSize {
     std::size_t grains = 0;
     double smallest = 0;  ///< smallest diameter, or a lower limit [m]
+    double fastest = 0;   ///< largest speed of a centre, or of a surface about its centre [m/s]
 };
 PackingSize size_of(const Packing& packing);
 /// For each replica. Reads packing files, each once.

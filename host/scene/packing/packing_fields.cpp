@@ -65,6 +65,20 @@ GrainColumns GrainColumns::named(const std::vector<std::string>& names, const st
             first_of({"species", "type"})};
 }
 
+/// The vector in three columns from `first` on.
+Vec3 GrainRows::vector(const std::vector<std::string_view>& words, std::size_t first, const char* unit,
+                       long line) {
+    Vec3 vector = Vec3::Zero();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto number = to_number(words[first + axis]);
+        vector[static_cast<int>(axis)] = number.value_or(0);
+        if (!number)
+            problems_.add(line, fmt::format("{} must be a finite number [{}], got {}", names_[first + axis],
+                                            unit, quoted(words[first + axis])));
+    }
+    return vector;
+}
+
 void GrainRows::add(const std::vector<std::string_view>& words, long line) {
     if (static_cast<long>(size()) >= largest_packing)
         return problems_.add(fmt::format("a packing must have at most {} grains, got more", largest_packing));
@@ -80,6 +94,8 @@ void GrainRows::add(const std::vector<std::string_view>& words, long line) {
     packing_.position.emplace_back(values[0], values[1], values[2]);
     packing_.diameter.push_back(columns_.diameters * values[3]);
     if (columns_.species) add_species(packing_, words[*columns_.species]);
+    if (columns_.velocity) packing_.velocity.push_back(vector(words, *columns_.velocity, "m/s", line));
+    if (columns_.spin) packing_.angular_velocity.push_back(vector(words, *columns_.spin, "1/s", line));
     ids_.push_back(columns_.id ? to_number(words[*columns_.id]).value_or(-1) : 0);
     lines_.push_back(line);
 }
@@ -98,6 +114,8 @@ Packing GrainRows::packing() const {
         sorted.position.push_back(packing_.position[order[k]]);
         sorted.diameter.push_back(packing_.diameter[order[k]]);
         if (columns_.species) sorted.species.push_back(packing_.species[order[k]]);
+        if (columns_.velocity) sorted.velocity.push_back(packing_.velocity[order[k]]);
+        if (columns_.spin) sorted.angular_velocity.push_back(packing_.angular_velocity[order[k]]);
     }
     problems_.report();
     sorted.species_names = packing_.species_names;

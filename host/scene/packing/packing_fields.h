@@ -25,7 +25,8 @@ void add_species(Packing& packing, std::string_view word);
 struct GrainColumns {
     std::size_t x, y, z, size;
     double diameters = 1;  ///< diameters per `size`: 2 for a radius
-    std::optional<std::size_t> id, species;
+    std::optional<std::size_t> id = {}, species = {};
+    std::optional<std::size_t> velocity = {}, spin = {};  ///< the first of three, along x, y and z
 
     /// For columns x, y, z (or xu, yu, zu) and diameter, radius or r, optionally id and species or type.
     /// Throws InputError.
@@ -43,6 +44,8 @@ public:
     Packing packing() const;
 
 private:
+    Vec3 vector(const std::vector<std::string_view>& words, std::size_t first, const char* unit, long line);
+
     GrainColumns columns_;
     std::vector<std::string> names_;
     FileProblems& problems_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "core/errors.h"
@@ -221,6 +222,16 @@ std::vector<std::string> columns_of(std::string_view format) {
     return names;
 }
 
+/// Whether a CSV table has the three columns of a vector; some of them alone are a problem.
+bool has_vector(const Table& table, const std::array<std::size_t, 3>& columns, std::string_view names,
+                FileProblems& problems) {
+    const auto there = std::ranges::count_if(columns, [&](std::size_t c) { return table.has(c); });
+    if (there == 1 || there == 2)
+        problems.add(
+            fmt::format("the header must name {} together or not at all, got {} of them", names, there));
+    return there == 3;
+}
+
 }  // namespace
 
 bool looks_like_dump(std::string_view text) { return without_blanks(text.substr(0, 1000)).starts_with(item); }
@@ -275,15 +286,22 @@ Packing read_yade_packing(std::string_view text, const std::string& source) {
 
 Packing read_csv_packing(const std::string& text, const std::string& source, std::optional<long> wanted) {
     FileProblems problems(source);
-    Table table(source, {"x_m", "y_m", "z_m", "diameter_m"}, text.size(), problems,
-                {"frame", "species", "type"}, &text);
+    Table table(
+        source, {"x_m", "y_m", "z_m", "diameter_m"}, text.size(), problems,
+        {"frame", "species", "type", "vx_m_s", "vy_m_s", "vz_m_s", "spin_x_1_s", "spin_y_1_s", "spin_z_1_s"},
+        &text);
     const bool has_frames = table.has(4), has_species = table.has(5) || table.has(6);
     const std::size_t species_column = table.has(5) ? 5 : 6;
     if (wanted && !has_frames && problems.empty())
         problems.add("must have a column frame where packing.frame is given, got none");
-    GrainColumns columns{.x = 0, .y = 1, .z = 2, .size = 3, .id = {}, .species = {}};
+    GrainColumns columns{.x = 0, .y = 1, .z = 2, .size = 3};
     if (has_species) columns.species = 4;
-    GrainRows grains(columns, {"x", "y", "z", "diameter", "species"}, problems);
+    if (has_vector(table, {7, 8, 9}, "vx_m_s, vy_m_s and vz_m_s", problems)) columns.velocity = 5;
+    if (has_vector(table, {10, 11, 12}, "spin_x_1_s, spin_y_1_s and spin_z_1_s", problems)) columns.spin = 8;
+    GrainRows grains(columns,
+                     {"x", "y", "z", "diameter", "species", "vx_m_s", "vy_m_s", "vz_m_s", "spin_x_1_s",
+                      "spin_y_1_s", "spin_z_1_s"},
+                     problems);
     std::set<long> frames;
     while (!problems.full() && table.next()) {
         const auto frame = has_frames ? table.whole_number(4, 0) : wanted;
@@ -291,7 +309,10 @@ Packing read_csv_packing(const std::string& text, const std::string& source, std
         if (!wanted) wanted = frame;  // the first
         if (frame != wanted) continue;
         const std::string_view species = table.text(species_column);
-        grains.add({table.text(0), table.text(1), table.text(2), table.text(3), species}, table.line());
+        std::vector<std::string_view> words{table.text(0), table.text(1), table.text(2), table.text(3),
+                                            species};
+        for (std::size_t column = 7; column < 13; ++column) words.push_back(table.text(column));
+        grains.add(words, table.line());
         if (has_species && species.empty()) table.problem("the species must be a name or a number, got none");
     }
     if (grains.size() == 0 && problems.empty() && !frames.empty())

@@ -24,10 +24,11 @@ inline RunPackingReader read_run_packing = nullptr;
 
 /// LIGGGHTS/LAMMPS data file, atom style sphere or granular: lines `id type diameter density x y z` in its
 /// `Atoms` section, in metres. Grains are numbered from 0 in the order of the file's ids. Density, bounds and
-/// velocities are ignored; the scene sets them.
+/// velocities are ignored: the scene sets the first two, and grains start at rest.
 Packing read_lammps_packing(std::string_view text, const std::string& source);
 
-/// CSV with the columns x_m, y_m, z_m, diameter_m in any order, optionally frame and species or type; other
+/// CSV with the columns x_m, y_m, z_m, diameter_m in any order, optionally frame, species or type, vx_m_s,
+/// vy_m_s, vz_m_s (initial velocity) and spin_x_1_s, spin_y_1_s, spin_z_1_s (initial angular velocity); other
 /// columns, such as `grain`, are ignored. Grains are numbered from 0 in the order of the lines.
 Packing read_csv_packing(const std::string& text, const std::string& source, std::optional<long> frame = {});
 
