@@ -5,7 +5,7 @@
 /* Sums (and a maximum) over a grain's contacts. */
 typedef struct {
     lanes stored;    /* energy [J] */
-    lanes deepest;   /* largest corrected overlap over the sum of radii */
+    lanes deepest;   /* largest corrected overlap over overlap_scale() */
     lanes stiffness; /* sum of dF/d(approach), each contact on its own [N/m] */
     lanes displaced; /* sum of F b^2/delta [J] */
     lanes pressed;   /* sum of F delta, half of it for contacts with grains [J] */
@@ -45,7 +45,7 @@ INLINE void add_contact_sums(Grain at, Neighbours neighbour, Displaced b, Contac
     const lanes without_own = b.here + b.there - (neighbour.distance - (at.now.radius + neighbour.radius));
     sums->stored += elastic_energy(at, effects, neighbour, c);
     sums->deepest =
-        fmax(sums->deepest, WHERE(neighbour.occupied, c.overlap / (at.now.radius + neighbour.radius), R(0)));
+        fmax(sums->deepest, WHERE(neighbour.occupied, c.overlap / overlap_scale(at, neighbour), R(0)));
     sums->stiffness += R(1.5) * force / fmax(R(1.5) * without_own - R(0.5) * overlap, R(0.25) * overlap);
     sums->displaced += force * b.here * b.here / overlap;
     sums->pressed += share * force * overlap;

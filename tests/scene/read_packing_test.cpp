@@ -119,7 +119,7 @@ TEST(CsvPacking, WrongFilesAreRefused) {
                 ElementsAre("p.csv: is empty: it must begin with the header x_m,y_m,z_m,diameter_m"));
     EXPECT_THAT(csv_problems("x_m,y_m,z_m\n1,2,3\n"),
                 ElementsAre("p.csv:1: the header must name diameter_m once, got it 0 times: the columns are "
-                            "x_m,y_m,z_m,diameter_m,frame,species,type"));
+                            "x_m,y_m,z_m,diameter_m,frame,species,type,radius_m,density_kg_m3"));
     EXPECT_THAT(csv_problems("x_m,x_m,y_m,z_m,diameter_m\n"),
                 ElementsAre(HasSubstr("p.csv:1: the header must name x_m once, got it 2 times")));
     EXPECT_THAT(csv_problems("x_m,y_m,z_m,diameter_m\n"),
