@@ -142,7 +142,7 @@ std::vector<StepInterval> Simulation::next_intervals() {
         runners_[r].set_time_step(engine_.time_step(r));
         intervals.push_back(
             runners_[r].next([&](const StepInterval& next) { return engine_.max_interval(r, next); }));
-        plates_[r].deflect(intervals[r], engine_.time_step(r), engine_.max_plate_move(r));
+        plates_[r].deflect(intervals[r], engine_.time_step(r, intervals[r]), engine_.max_plate_move(r));
     }
     return intervals;
 }
