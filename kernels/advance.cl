@@ -99,10 +99,7 @@ INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const sl
         add_contacts(c, neighbour.normal, &sums.force, &sums.torque);
         add_power(at, neighbour, partner[v], c, &sums.power);
         if (effects & EFFECT_ROLLING_RESISTANCE) sums.torque = add3(sums.torque, c.couple);
-        /* The negated comparison is also true for NaN. */
-        const mask too_deep =
-            NOT(AS_MASK(c.approach <= replica->overlap_limit * (at.now.radius + neighbour.radius))) &
-            neighbour.occupied;
+        const mask too_deep = is_too_deep(at, neighbour, c.approach) & neighbour.occupied;
         const mask unprobed = AS_MASK(b.here > replica->probe_gap) & NOT(c.touching) & neighbour.occupied;
         sums.trouble += WHERE(too_deep, R(1), R(0)) + WHERE(unprobed, R(DEEP_SLOTS), R(0));
         tabulate(c, neighbour.normal, v, table);

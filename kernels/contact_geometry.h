@@ -71,6 +71,24 @@ INLINE Turn turn_of(Grain at, Neighbours neighbour, real elapsed) {
                   R(0.5) * elapsed * dot3(spins, neighbour.normal)};
 }
 
+/* Length that overlaps are compared with: R^2/R* with the smaller radius R, so that their ratio is (a/R)^2
+   with Hertz's contact radius a. It is the sum of the radii of equal grains, and R on a wall. The same bits
+   from both sides. */
+INLINE lanes smaller_radius(Grain at, Neighbours neighbour) {
+    return WHERE(neighbour.wall, at.now.radius, fmin(at.now.radius, neighbour.radius));
+}
+INLINE lanes overlap_scale(Grain at, Neighbours neighbour) {
+    const lanes larger = fmax(at.now.radius, neighbour.radius);
+    return (at.now.radius + neighbour.radius) * (smaller_radius(at, neighbour) / larger);
+}
+
+/* Whether an overlap exceeds the replica's limit times overlap_scale(), or is NaN; without a division. */
+INLINE mask is_too_deep(Grain at, Neighbours neighbour, lanes overlap) {
+    const lanes larger = fmax(at.now.radius, neighbour.radius);
+    const lanes scale = (at.now.radius + neighbour.radius) * smaller_radius(at, neighbour);
+    return NOT(AS_MASK(overlap * larger <= at.replica->overlap_limit * scale));
+}
+
 INLINE Neighbours gather_neighbours(Grain at, const int effects, global const Motion* restrict motion,
                                     slots partner) {
     const mask wall = AS_MASK(partner < NO_PARTNER);

@@ -6,7 +6,7 @@
 typedef struct {
     lanes stored;  /* energy of contacts [J] */
     lanes springs; /* energy of tangential and rolling springs [J] */
-    lanes deepest; /* largest corrected overlap over the sum of radii */
+    lanes deepest; /* largest corrected overlap over overlap_scale() */
     lanes3 force, torque;
     Power power;
     Tensor stiffness; /* sum of w (k_n n n + k_t (1 - n n)) [N/m] (stable_step.h) */
@@ -45,7 +45,7 @@ INLINE void add_contact_sums(Grain at, Neighbours neighbour, Displaced b, slots 
     sums->stored += elastic_energy(at, effects, neighbour, c);
     sums->springs += WHERE(neighbour.wall, R(1), R(0.5)) * c.spring_energy;
     sums->deepest =
-        fmax(sums->deepest, WHERE(neighbour.occupied, c.overlap / (at.now.radius + neighbour.radius), R(0)));
+        fmax(sums->deepest, WHERE(neighbour.occupied, c.overlap / overlap_scale(at, neighbour), R(0)));
     add_contacts(c, n, &sums->force, &sums->torque);
     if (effects & EFFECT_ROLLING_RESISTANCE) sums->torque = add3(sums->torque, c.couple);
     add_power(at, neighbour, partner, c, &sums->power);

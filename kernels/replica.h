@@ -10,7 +10,7 @@ typedef struct {
     real skin;                /* neighbour list margin [m] */
     real max_move;            /* displacement of a grain at which the neighbour list is rebuilt [m] */
     real probe_gap;           /* largest gap at which surface displacements are computed [m] */
-    real overlap_limit;       /* largest corrected overlap over the sum of radii */
+    real overlap_limit;       /* largest corrected overlap over overlap_scale() */
     real cell_size[3];        /* of the cell list, along x y z [m] */
     real wall_position[6];    /* x_min x_max y_min y_max floor plate, at the interval's start [m] */
     real deformation[6];      /* of a cell, at the interval's start: xx yy zz xy xz yz (container.h) */

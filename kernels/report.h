@@ -10,7 +10,7 @@ typedef struct {
     real rubbed;         /* of tangential forces and rolling couples, springs included [J] */
     real dragged;        /* of drag [J] */
     real moved_squared;  /* largest squared displacement since the neighbour list was built [m2] */
-    real deepest_overlap; /* largest corrected overlap over the sum of radii */
+    real deepest_overlap; /* largest corrected overlap over overlap_scale() */
     real step_rate;       /* inverse of the longest stable time step (stable_step.h) [1/s] */
     real wall_force[18];  /* on x_min x_max y_min y_max floor plate, x y z each [N] */
     int status;           /* STATUS_* bits of all grains */

@@ -26,8 +26,7 @@ struct Packing {
 /// The container: floor at z = 0, the plate above, and at the sides as `shape` says. A box has walls at x = 0
 /// and size_x, y = 0 and size_y. A cylinder touches these four planes: both sizes are its diameter. A
 /// periodic cell has these sizes as periods; a `cell` is also periodic along z, with edges (size_x, 0, 0),
-/// (tilt_xy, size_y, 0) and (tilt_xz, tilt_yz, height). core/container.h says which walls exist. size_y, 0)
-/// and (tilt_xz, tilt_yz, height). What has which walls: core/container.h.
+/// (tilt_xy, size_y, 0) and (tilt_xz, tilt_yz, height). core/container.h says which walls exist.
 struct Box {
     double size_x = 0;  ///< [m]
     double size_y = 0;  ///< [m]

@@ -65,8 +65,8 @@ struct Scan {
     double mean_force = 0;           ///< <f>: mean |force| of those contacts [N]
     double packing_fraction = 0;     ///< phi, in the space more than a mean diameter from every wall
     double branch_length = 0;        ///< <b>: mean distance between centres of touching grains [m]
-    double max_overlap = unknown;    ///< largest geometric overlap of two grains over the sum of their radii;
-                                     ///< 0: no contact
+    double max_overlap = unknown;    ///< largest relative geometric overlap of two grains
+                                     ///< (core/law_range.h); 0: no contact
     Mat3 stress = unknown_tensor();  ///< of the packing, compression positive (core/stress.h) [Pa]
     Mat3 fabric = unknown_tensor();  ///< mean of n n over contacts between grains
     std::vector<Vec3> position;      ///< by grain [m]

@@ -38,7 +38,4 @@ private:
     std::vector<std::vector<std::size_t>> first_scan_;  ///< by file and replica
 };
 
-/// From a run of one replica: frame `frame`, or the first one with positions. Throws InputError.
-Packing packing_of_run(const std::filesystem::path& file, std::optional<long> frame);
-
 }  // namespace mcdem::io

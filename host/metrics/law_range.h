@@ -6,7 +6,7 @@
 
 namespace mcdem::inline metrics {
 
-/// Overlaps of two grains over the sum of their radii.
+/// Relative overlaps of two grains (core/law_range.h).
 struct BeyondLaw {
     double tested = 0;        ///< overlap (core/law_range.h)
     double displacement = 0;  ///< smallest displacement with a larger overlap [m]

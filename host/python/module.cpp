@@ -5,7 +5,7 @@
 #include "cl/opencl.h"
 #include "core/errors.h"
 #include "core/version.h"
-#include "io/results.h"
+#include "io/run_packing.h"
 #include "python/bindings.h"
 #include "scene/packing/read_packing.h"
 
@@ -39,7 +39,7 @@ PYBIND11_MODULE(_engine, module) {
     pybind11::register_exception_translator(mcdem::translate);
     mcdem::find_numpy();
     module.attr("__version__") = mcdem::version_text;
-    mcdem::read_run_packing = mcdem::packing_of_run;
+    mcdem::read_run_packing = mcdem::recorded_packing;
     mcdem::bind_scene(module);
     mcdem::bind_results(module);
     mcdem::bind_simulation(module);

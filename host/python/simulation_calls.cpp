@@ -12,6 +12,7 @@
 #include "io/results.h"
 #include "python/bindings.h"
 #include "python/watch.h"
+#include "scene/read/scene_warnings.h"
 #include "sim/batch_limits.h"
 
 namespace mcdem::inline python {
@@ -47,6 +48,7 @@ void expect_one_alive(const Run& run) {
 
 SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::object progress) {
     Watch watch(std::move(progress));
+    for (const std::string& warning : scene_warnings(scene)) watch.warn(warning);
     auto run = std::make_shared<Run>();
     try {
         const py::gil_scoped_release others_go_on;
@@ -73,6 +75,7 @@ SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::obje
 SharedRun run_into(const Scene& scene, const std::filesystem::path& folder, bool resume,
                    const std::string& choice, py::object progress) {
     Watch watch(std::move(progress));
+    for (const std::string& warning : scene_warnings(scene)) watch.warn(warning);
     RunOptions options;
     options.folder = folder;
     options.start = resume ? Start::resume : Start::fresh;

@@ -81,7 +81,8 @@ struct Numerics {
     double skin = 0.2;       ///< margin of the neighbour list over the mean radius
     double probe_gap =
         0.15;  ///< maximum gap at which surface displacements can create contacts, over the mean radius
-    double overlap_limit = 0.5;    ///< corrected overlap over the sum of radii beyond which the replica stops
+    double overlap_limit = 0.5;    ///< relative corrected overlap (core/law_range.h) beyond which the replica
+                                   ///< stops; on walls over the radius
     bool stop_beyond_law = false;  ///< stop at the first scan beyond the range in core/law_range.h
 };
 

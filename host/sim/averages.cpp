@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/container.h"
+#include "core/law_range.h"
 #include "core/stress.h"
 
 namespace mcdem::inline sim {
@@ -103,8 +104,9 @@ void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diamet
         double distance = 0;
         if (!is_wall(contact.partner)) {
             distance = apart(now, scan.position[contact.grain], scan.position[contact.partner]).norm();
-            const double reach = (diameter[contact.grain] + diameter[contact.partner]) / 2;
-            scan.max_overlap = std::max(scan.max_overlap, (reach - distance) / reach);
+            const double one = diameter[contact.grain] / 2, other = diameter[contact.partner] / 2;
+            scan.max_overlap =
+                std::max(scan.max_overlap, relative_overlap(one + other - distance, one, other));
         }
         const double size = contact.force.norm();
         if (size < force_threshold) continue;

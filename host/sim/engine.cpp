@@ -160,7 +160,7 @@ double Engine::speed_of_walls(int replica, const StepInterval& interval) const {
 }
 
 int Engine::max_interval(int replica, const StepInterval& interval) const {
-    const double step = speed_of_walls(replica, interval) * time_step(replica);
+    const double step = speed_of_walls(replica, interval) * time_step(replica, interval);
     const double steps = step > 0 ? max_plate_move(replica) / step : max_interval_steps;
     return std::clamp(static_cast<int>(std::min(steps, 1e6)), 1, max_interval_steps);
 }
@@ -214,7 +214,7 @@ void Engine::upload_intervals(const std::vector<StepInterval>& intervals) {
         [&](auto& all) {
             for (std::size_t r = 0; r < all.size(); ++r) {
                 if (intervals[r].steps == 0) continue;
-                set_time_step(all[r], replicas_[r], time_step(static_cast<int>(r)));
+                set_time_step(all[r], replicas_[r], time_step(static_cast<int>(r), intervals[r]));
                 if (is_cell(replicas_[r].box)) {
                     set_strain(all[r], replicas_[r], intervals[r].strain, intervals[r].strain_rate,
                                rebuild_[r] ? reach_[r] : 0);
@@ -388,7 +388,7 @@ std::vector<IntervalResult> Engine::finish_interval() {
             const auto reports = by_replica(working_.portions, found, layout_.replicas());
             for (int r = 0; r < layout_.replicas(); ++r) {
                 if (intervals[r].steps == 0) continue;
-                const double duration = time_step(r) * made[r];
+                const double duration = time_step(r, intervals[r]) * made[r];
                 for (std::size_t k = 0; k < strain_[r].size(); ++k)
                     strain_[r][k] = intervals[r].strain[k] + duration * intervals[r].strain_rate[k];
             }
@@ -405,8 +405,9 @@ std::vector<IntervalResult> Engine::finish_interval() {
                 }
                 if (result.failed_grain >= 0)
                     result.failed_grain = layout_.order[r][result.failed_grain - layout_.first_grain[r]];
-                const double plate_move = intervals[r].plate_velocity * time_step(r) * made[r];
-                plate_moved_[r] += speed_of_walls(r, intervals[r]) * time_step(r) * made[r];
+                const double step = time_step(r, intervals[r]);
+                const double plate_move = intervals[r].plate_velocity * step * made[r];
+                plate_moved_[r] += speed_of_walls(r, intervals[r]) * step * made[r];
                 steps_made_[r] += made[r];
                 plate_z_[r] = intervals[r].plate_z + plate_move;
                 const double limit = rebuild_at * skin_[r];

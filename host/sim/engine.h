@@ -25,7 +25,13 @@ struct StepInterval {
     double settle_drag = 0;     ///< drag on velocities in addition to the scene's, and on spins [1/s]
     Strain strain{};            ///< of a cell, at the start of the interval
     Strain strain_rate{};       ///< [1/s]
+    double step_part = 1;  ///< of the replica's time step, at most 1: shorter steps for a prescribed speed
 };
+
+inline StepInterval in_part(StepInterval interval, double step_part) {
+    interval.step_part = step_part;
+    return interval;
+}
 
 /// Result of an interval.
 struct IntervalResult {
@@ -38,7 +44,7 @@ struct IntervalResult {
     double damped = 0;          ///< dissipated by normal damping [J]
     double rubbed = 0;   ///< work of tangential forces and couples, dissipated or stored in springs [J]
     double dragged = 0;  ///< dissipated by drag [J]
-    double deepest_overlap = 0;  ///< corrected overlap over the sum of radii
+    double deepest_overlap = 0;  ///< relative corrected overlap (core/law_range.h)
     double step_rate = 0;        ///< inverse of the longest stable time step (kernels/stable_step.h) [1/s]
     std::array<Vec3, wall_count> wall_force = no_wall_forces();  ///< on the walls [N]
     Mat3 stress = unknown_tensor();  ///< of a cell, compression positive (core/stress.h) [Pa]
@@ -88,6 +94,10 @@ public:
     int replicas() const { return layout_.replicas(); }
     /// Time step of the next interval [s].
     double time_step(int replica) const;
+    /// Time step of this interval [s].
+    double time_step(int replica, const StepInterval& interval) const {
+        return interval.step_part * time_step(replica);
+    }
     /// Maximum number of steps of the interval for its plate velocity or strain rate, so that the neighbour
     /// list remains valid.
     int max_interval(int replica, const StepInterval& interval) const;

@@ -106,8 +106,14 @@ long ProtocolRunner::max_stage_steps() const {
         time_step_);
 }
 
-/// The next interval according to the protocol. The plate ends a move exactly at the scan position, so its
-/// last speed is slightly lower. On its way down it slows down before it reaches the grains.
+/// Whole steps for the way to the next scan, `way_in_steps` at full speed. Without a tolerance this speed is
+/// prescribed, up to 0.1 %, so the steps are shorter; otherwise it is a maximum.
+ProtocolRunner::Steps ProtocolRunner::steps_of_way(double way_in_steps) const {
+    const double count = std::max(1.0, std::ceil(way_in_steps - 1e-9)), part = way_in_steps / count;
+    return {count, protocol_.rate_tolerance == 0 && part > 0 && part < 0.999 ? part : 1};
+}
+
+/// The plate ends a move exactly at the scan position. On its way down it slows down before the grains.
 StepInterval ProtocolRunner::planned() const {
     if (by_force()) return planned_by_force();
     if (by_stress()) return planned_by_stress();
@@ -120,23 +126,26 @@ StepInterval ProtocolRunner::planned() const {
     const double step = time_step_ * (is_free() ? max_speed() : slow_speed());
     const double most =
         is_free() && left < 0 ? std::ceil((state_.plate_z - state_.free_above) / step) : max_steps;
-    const double steps = std::max(1.0, std::ceil(std::abs(left) / step - 1e-9));
-    return {static_cast<int>(std::min({steps, most, max_steps})), state_.plate_z, left / (steps * time_step_),
-            0};
+    const auto [steps, part] = steps_of_way(std::abs(left) / step);
+    return in_part({static_cast<int>(std::min({steps, most, max_steps})), state_.plate_z,
+                    left / (steps * part * time_step_)},
+                   part);
 }
 
 /// The velocity is half a sine over each way, which takes as long as at constant speed.
 StepInterval ProtocolRunner::planned_smoothly() const {
     const double from = state_.level == 0 ? state_.leg_begin : level_value(state_.level);
     const double way = waypoint() - from, speed = is_free() ? max_speed() : slow_speed();
-    const double all_steps = std::abs(way) / (speed * time_step_);
+    const double at_speed = std::abs(way) / (speed * time_step_), part = steps_of_way(at_speed).part;
+    const double all_steps = at_speed / part, time_step = part * time_step_;
     const double passed = std::clamp((state_.plate_z - from) / way, 0.0, 1.0);
     const double time = std::acos(1 - 2 * passed) / std::numbers::pi;  // over that of the way
     const double left = std::max(1.0, std::ceil((1 - time) * all_steps - 1e-9));
     const double steps = std::min({left, std::ceil(all_steps / intervals_of_way), max_steps});
     const double next = (1 - std::cos(std::numbers::pi * (time + steps / all_steps))) / 2;
     const double to = steps < left ? from + next * way : waypoint();
-    return {static_cast<int>(steps), state_.plate_z, (to - state_.plate_z) / (steps * time_step_), 0};
+    return in_part({static_cast<int>(steps), state_.plate_z, (to - state_.plate_z) / (steps * time_step)},
+                   part);
 }
 
 /// The plate stays between plate.end and plate.start.
@@ -187,7 +196,8 @@ double ProtocolRunner::drag() const {
 
 void ProtocolRunner::take_note(const IntervalResult& result) {
     StepInterval interval = planned();
-    const double velocity = interval.plate_velocity, duration = time_step_ * result.steps;
+    const double velocity = interval.plate_velocity, step = interval.step_part * time_step_;
+    const double duration = step * result.steps;
     double fastest = std::abs(velocity);
     if (by_stress()) {
         deform(interval);
@@ -200,12 +210,12 @@ void ProtocolRunner::take_note(const IntervalResult& result) {
     }
     state_.step += result.steps;
     state_.stage_step += result.steps;
-    state_.time += result.steps * time_step_;
+    state_.time += duration;
     const double plate = force_along_z(result, Wall::plate);
     if (state_.stage == Stage::move)
         state_.rate_error =
             is_free() && plate == 0 ? 0 : quasi_static_.rate_error(fastest, rate_length(), state_.pressure);
-    state_.plate_z += velocity * time_step_ * result.steps;
+    state_.plate_z += velocity * step * result.steps;
     if (plate != 0) state_.free_above = state_.plate_z + clearance_;
     const double pressure = cell_ ? quasi_static_.pressure(result.stress)
                                   : quasi_static_.pressure(plate, force_along_z(result, Wall::floor));

@@ -121,6 +121,10 @@ private:
     double hold_time() const;
     long max_stage_steps() const;
     long max_steps_by_stress() const;
+    struct Steps {
+        double count = 1, part = 1;  ///< part of the time step
+    };
+    Steps steps_of_way(double way_in_steps) const;
     StepInterval planned() const;
     double slow_speed() const;
     bool pauses() const;

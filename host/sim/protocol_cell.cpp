@@ -97,7 +97,8 @@ void ProtocolRunner::deform(StepInterval& interval) const {
     interval.strain_rate = move().direction();
     for (double& rate : interval.strain_rate) rate *= interval.plate_velocity;
     if (by_stress()) {
-        const Strain rates = cell_->rates(state_.cell, stress(), interval.steps * time_step_);
+        const Strain rates =
+            cell_->rates(state_.cell, stress(), interval.steps * interval.step_part * time_step_);
         for (std::size_t axis = 0; axis < rates.size(); ++axis) interval.strain_rate[axis] += rates[axis];
     }
     interval.plate_velocity = 0;
@@ -109,14 +110,15 @@ StepInterval ProtocolRunner::planned_by_stress() const {
         std::clamp(std::floor(cell_->interval(state_.cell, stress()) / time_step_), 2.0, max_steps);
     if (state_.stage != Stage::move)
         steps = std::clamp(static_cast<double>(max_stage_steps() - state_.stage_step), 1.0, steps);
-    double rate = 0;
+    double rate = 0, part = 1;
     if (state_.cell.drive > 0) {
         const double left = waypoint() - state_.plate_z;
-        const double needed = std::max(1.0, std::ceil(left / (state_.cell.drive * time_step_) - 1e-9));
-        rate = needed <= steps ? left / (needed * time_step_) : state_.cell.drive;
-        steps = std::min(steps, needed);
+        const Steps needed = steps_of_way(left / (state_.cell.drive * time_step_));
+        if (needed.count <= steps) part = needed.part;
+        rate = needed.count <= steps ? left / (needed.count * part * time_step_) : state_.cell.drive;
+        steps = std::min(steps, needed.count);
     }
-    return {static_cast<int>(steps), state_.plate_z, rate, drag()};
+    return in_part({static_cast<int>(steps), state_.plate_z, rate, drag()}, part);
 }
 
 void ProtocolRunner::follow_stress(double duration) {

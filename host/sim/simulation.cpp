@@ -11,6 +11,7 @@
 #include "core/errors.h"
 #include "core/law_range.h"
 #include "scene/packing/make_packing.h"
+#include "scene/packing/neighbour_slots.h"
 #include "scene/packing/true_grains.h"
 #include "sim/averages.h"
 #include "sim/batch_limits.h"
@@ -31,15 +32,19 @@ std::string beyond_law(const Replica& replica, const Scan& scan) {
     const auto tested = tested_overlap(replica.contact.model);
     if (!replica.numerics.stop_beyond_law || !tested || !(scan.max_overlap > *tested)) return "";
     return fmt::format(
-        "grains overlap by {:.3f} of the sum of their radii, more than the law of {} was tested for, {} "
+        "grains overlap by {:.3f} of the sum of their radii (of unequal grains times the ratio of the "
+        "radii), "
+        "more than the law of {} was tested for, {} "
         "({}; or set numerics.stop_beyond_law = false)",
         scan.max_overlap, name(replica.contact.model), *tested, compress_less(replica));
 }
 
 /// Why an overlap passed its limit, and what to do. `relaxes`: before the plate or the cell has moved.
 std::string cause_of_overlap(const Replica& replica, bool relaxes) {
-    const auto passed =
-        fmt::format("a corrected overlap passed {} of the sum of the radii", replica.numerics.overlap_limit);
+    const auto passed = fmt::format(
+        "a corrected overlap passed numerics.overlap_limit = {} of the sum of the radii (of unequal "
+        "grains times the ratio of the radii)",
+        replica.numerics.overlap_limit);
     const bool has_gamma = replica.contact.model == ContactModel::mc_dem;
     if (relaxes)
         return fmt::format(
@@ -54,6 +59,13 @@ std::string cause_of_overlap(const Replica& replica, bool relaxes) {
                            compress_less(replica));
     return fmt::format("{}: no static solution at this compression, the force runs away ({}{})", passed,
                        compress_less(replica), has_gamma ? ", or lower contact.gamma" : "");
+}
+
+std::string cause_of_slots(int slots) {
+    const auto many = fmt::format("a grain has more than {} near neighbours", slots);
+    if (slots < most_slots)
+        return fmt::format("{} (set numerics.slots = {}, or lower numerics.skin)", many, slots + 16);
+    return fmt::format("{}, the most that there can be: {} (lower numerics.skin)", many, widest_sizes);
 }
 
 /// Advice for each reason why a replica stops (kernels/status.h).
@@ -75,9 +87,7 @@ std::string cause_of(const IntervalResult& result, const Replica& replica, int s
               "long a time step (lower plate.speed or numerics.time_step)"
             : "the centre of a grain left the container: too fast a plate or too long a time step (lower "
               "plate.speed or numerics.time_step)");
-    add(STATUS_SLOTS,
-        fmt::format("a grain has more than {} near neighbours (raise numerics.slots, or lower numerics.skin)",
-                    slots));
+    add(STATUS_SLOTS, cause_of_slots(slots));
     add(STATUS_UNPROBED,
         fmt::format("a free surface moved out by more than numerics.probe_gap = {} mean radii: "
                     "contacts could be missed (raise numerics.probe_gap)",
@@ -164,7 +174,7 @@ std::vector<StepInterval> Simulation::next_intervals() {
         runners_[r].set_time_step(engine_.time_step(r));
         intervals.push_back(
             runners_[r].next([&](const StepInterval& next) { return engine_.max_interval(r, next); }));
-        plates_[r].deflect(intervals[r], engine_.time_step(r), engine_.max_plate_move(r));
+        plates_[r].deflect(intervals[r], engine_.time_step(r, intervals[r]), engine_.max_plate_move(r));
     }
     return intervals;
 }

@@ -40,5 +40,35 @@ TEST_F(PackingTest, OfAnExperimentAndOfARunAreTheSame) {
               read_run(path("a")).recordings.front().diameter);
 }
 
+// A loaded frame has lost the history of its contacts; a packing at rest has none worth a word.
+TEST_F(PackingTest, OfALoadedFrameStartsWithoutItsHistory) {
+    expect_done(mcdem(
+        run_words("a", {"--set", "protocol.scan_at_start=true", "--set", "contact.model=independent"})));
+    const std::string said =
+        "% of a diameter, but the history of their contacts is not in the file (friction springs)";
+    const std::vector<std::string> loaded{"packing.file=a/run.h5", "packing.frame=4", "plate.start=0.08"};
+    const auto validated = validate(loaded);
+    expect_done(validated);
+    EXPECT_THAT(validated.err, HasSubstr(said));
+    EXPECT_THAT(mcdem({"run", "small.toml", "--set", loaded[0], "--set", loaded[1], "--set", loaded[2],
+                       "--out", "b", "--no-figures"})
+                    .err,
+                HasSubstr(said));
+    auto saturated = loaded;
+    saturated.push_back("contact.friction_law=saturated");
+    EXPECT_EQ(validate(saturated).err, "");
+}
+
+TEST_F(PackingTest, OfARunMustFitTheContainer) {
+    expect_done(mcdem(run_words("a", {"--set", "contact.model=independent"})));
+    expect_bad_input(
+        validate({"packing.file=a/run.h5", "box.size_x=0.07"}),
+        "a/run.h5, frame 0: the box must be that of the scene, container.size_x = 0.07, got 0.06: set "
+        "container.size_x = 0.06");
+    expect_bad_input(
+        validate({"packing.file=a/run.h5", "container.shape=periodic"}),
+        "must be of the scene's container.shape = \"periodic\", got a box: set container.shape = \"box\"");
+}
+
 }  // namespace
 }  // namespace mcdem

@@ -355,8 +355,9 @@ Totals StepReference::totals() const {
         // displacement
         totals.elastic_energy +=
             (wall ? 1 : 0.5) * (c.energy + c.spring_energy) - (finite ? 1 : 0.5) * c.elastic * c.displacement;
-        totals.deepest_overlap = std::max(totals.deepest_overlap,
-                                          c.overlap / (radius_[c.grain] + (wall ? 0 : radius_[c.partner])));
+        const double one = radius_[c.grain], other = wall ? one : radius_[c.partner];
+        const double scale = wall ? one : (one + other) * std::min(one, other) / std::max(one, other);
+        totals.deepest_overlap = std::max(totals.deepest_overlap, c.overlap / scale);
         if (wall) totals.wall_force[static_cast<int>(mcdem::wall_of(c.partner))] -= c.force;
     }
     return totals;

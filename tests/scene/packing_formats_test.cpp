@@ -185,7 +185,8 @@ TEST(PackingState, CountsContactsAndFindsTheDeepest) {
     const DeepestPair deepest = deepest_pair(packing, box, 0.0465);
     EXPECT_EQ(deepest.first, 0u);
     EXPECT_EQ(deepest.second, 1u);
-    EXPECT_NEAR(deepest.overlap, 1e-3 / 0.025, 1e-12) << "of the sum of the radii";
+    EXPECT_NEAR(deepest.overlap, 1e-3 / 0.025 * 1.5, 1e-12)
+        << "of the sum of the radii, times the ratio of the radii";
     const Packing across{{Vec3(0.01, 0.5, 0.5), Vec3(0.995, 0.5, 0.5)}, {0.03, 0.03}};
     EXPECT_NEAR(deepest_pair(across, {1, 1, ContainerShape::periodic}, 1).overlap, 0.5, 1e-12)
         << "over the periodic side";
@@ -201,8 +202,8 @@ TEST(PackingState, GrainsInOnePlaceAreRefused) {
     const std::string file = (folder.path() / "s.toml").string();
     EXPECT_THAT(
         problems_of([&] { parse_scene(scene + "0.4\n", file); }),
-        ElementsAre(HasSubstr(
-            "overlap_limit = 0.4 of the sum of their radii, got 1 for grains 0 and 2, counted from 0")));
+        ElementsAre(HasSubstr("overlap_limit = 0.4 of the sum of their radii, got 1 (of unequal grains times "
+                              "the ratio of the radii) for grains 0 and 2, counted from 0")));
     EXPECT_NO_THROW(parse_scene(scene + "1\n", file));
 }
 

@@ -121,7 +121,7 @@ TEST(CsvPacking, WrongFilesAreRefused) {
     EXPECT_THAT(csv_problems("x_m,y_m,z_m\n1,2,3\n"),
                 ElementsAre("p.csv:1: the header must name diameter_m once, got it 0 times: the columns are "
                             "x_m,y_m,z_m,diameter_m,frame,species,type,vx_m_s,vy_m_s,vz_m_s,"
-                            "spin_x_1_s,spin_y_1_s,spin_z_1_s"));
+                            "spin_x_1_s,spin_y_1_s,spin_z_1_s,radius_m,density_kg_m3"));
     EXPECT_THAT(csv_problems("x_m,x_m,y_m,z_m,diameter_m\n"),
                 ElementsAre(HasSubstr("p.csv:1: the header must name x_m once, got it 2 times")));
     EXPECT_THAT(csv_problems("x_m,y_m,z_m,diameter_m\n"),

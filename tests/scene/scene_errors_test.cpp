@@ -93,7 +93,7 @@ friction = 0.1
             "bad.toml:13: protocol.cycles must be a whole number between 1 and 10000, got 2.5",
             "bad.toml:14: protocol.stop_at_scans must be true or false, got 1",
             "bad.toml:15: protocol.scans_per_stroke must be a whole number between 1 and 10000, got 0",
-            "bad.toml:17: numerics.slots must be a whole number between 16 and 64, a multiple of 16, got 17",
+            "bad.toml:17: numerics.slots must be a whole number between 0 and 64, a multiple of 16, got 17",
             "bad.toml:18: wall must be a table of a scene, got an unknown one (did you mean walls?)",
             "bad.toml:21: batch.vary.\"contact.gamma\" must be a number between 0 and 10, got \"high\"",
             "bad.toml:22: batch.vary.\"output.contacts\" must be a key of which replicas have their own, got "

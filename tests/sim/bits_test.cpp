@@ -116,6 +116,15 @@ TEST(Bits, StatesReadTogetherEqualStatesReadOneByOne) {
     }
 }
 
+// The number of slots may follow the widest sizes in a batch, so it must not affect the other replicas.
+TEST(Bits, TheNumberOfSlotsChangesNothing) {
+    const auto kinds = starts({0, 2, 5, with_species});
+    WholeRun few(Precision::single_precision, kinds, 16), more(Precision::single_precision, kinds, 48);
+    few.finish();
+    more.finish();
+    for (int r = 0; r < 4; ++r) expect_same(few, r, more, r);
+}
+
 TEST(Bits, TwoFreshRunsAreTheSame) {
     WholeRun one(Precision::single_precision, starts({0, 1, 2, 3})),
         other(Precision::single_precision, starts({0, 1, 2, 3}));

@@ -191,6 +191,33 @@ TEST(Failure, BeyondTheModelsRangeAReplicaContinuesOrStopsAsTheSceneSpecifies) {
                 testing::HasSubstr("more than the law of elastic_sphere was tested"));
 }
 
+// A small grain between two large ones: the limit counts for its own size, so the large ones never touch.
+// Over the sum of the radii an overlap of its radius would be 0.13 only.
+TEST(Failure, AGrainThatVanishesBetweenTwoOthersStopsItsReplica) {
+    Replica replica = test_replica(ContactModel::independent);
+    replica.box = {0.06, 0.06};
+    replica.grains.excess_density = 0;
+    replica.plate.start = 0.043;
+    replica.plate.end = 0.0375;
+    const Start start{replica,
+                      {{{0.03, 0.03, 0.01}, {0.03, 0.03, 0.0215}, {0.03, 0.03, 0.033}}, {0.02, 0.003, 0.02}}};
+    auto scene = short_scene({start});
+    scene.replicas[0].protocol.scans_per_stroke = 30;
+    mcdem::Simulation simulation(device(), scene, {start.packing});
+    std::string cause;
+    double deepest = 0;
+    while (simulation.advance(
+        [&](int, const mcdem::Scan& scan) {
+            deepest = std::max(deepest, scan.max_overlap);
+            EXPECT_GT(scan.position[2].z() - scan.position[0].z(), 0.02) << "the large grains touch";
+        },
+        [&](int, const mcdem::Failure& failure) { cause = failure.cause; })) {
+    }
+    EXPECT_THAT(cause, testing::HasSubstr("passed numerics.overlap_limit = 0.5 of the sum of the radii"));
+    EXPECT_GT(deepest, 0.3) << "max_overlap says it before";
+    EXPECT_LE(deepest, 0.5);
+}
+
 std::string cause_of_failure(const Start& start) {
     mcdem::Simulation simulation(device(), short_scene({start}), {start.packing});
     std::string cause;

@@ -108,7 +108,7 @@ TEST(Protocol, MovesAtTheGivenSpeedWithoutJumps) {
     int moving = 0;
     for (const StepInterval& interval : course.intervals) {
         EXPECT_NEAR(interval.plate_z, plate, 1e-12);
-        plate += interval.plate_velocity * interval.steps * time_step;
+        plate += interval.plate_velocity * interval.steps * interval.step_part * time_step;
         moving += interval.plate_velocity != 0 ? interval.steps : 0;
         EXPECT_NEAR(std::abs(interval.plate_velocity), interval.plate_velocity != 0 ? 0.5 : 0, 1e-9);
         EXPECT_EQ(interval.settle_drag > 0, interval.plate_velocity == 0)
@@ -129,7 +129,7 @@ TEST(Protocol, StartsAndStopsSmoothlyForAPauseAndLeavesThePackingAlone) {
     int moving = 0;
     for (const StepInterval& interval : course.intervals) {
         EXPECT_NEAR(interval.plate_z, plate, 1e-12);
-        plate += interval.plate_velocity * interval.steps * time_step;
+        plate += interval.plate_velocity * interval.steps * interval.step_part * time_step;
         if (interval.plate_velocity == 0 && moving == 0) continue;  // relaxes at first
         if (interval.plate_velocity == 0) {
             standing += interval.steps * time_step;
@@ -258,7 +258,8 @@ std::vector<StepInterval> stroke_above_grains(double weight) {
     double lowest = grains.top;
     while (!runner.finished()) {
         const StepInterval interval = runner.next([](const StepInterval&) { return 5; });
-        const double z = interval.plate_z + interval.plate_velocity * interval.steps * time_step;
+        const double z =
+            interval.plate_z + interval.plate_velocity * interval.steps * interval.step_part * time_step;
         lowest = std::min(lowest, z);
         IntervalResult result = answer(interval.steps, 0);
         // Half of the way is plastic: on the way up the plate leaves the grains at 0.125 m.
@@ -274,7 +275,7 @@ std::vector<StepInterval> stroke_above_grains(double weight) {
 TEST(Protocol, APlateThatTouchesNoGrainIsFast) {
     for (const StepInterval& move : stroke_above_grains(1)) {
         const double speed = std::abs(move.plate_velocity),
-                     way = move.plate_velocity * move.steps * time_step;
+                     way = move.plate_velocity * move.steps * move.step_part * time_step;
         if (move.plate_z > (way < 0 ? 0.1521 : 0.1291)) {
             EXPECT_NEAR(speed, 0.5, 0.5 / 40)
                 << move.plate_z << ": moves have at least 40 steps, a whole number";
@@ -303,7 +304,52 @@ TEST(Protocol, WithoutAToleranceTheSpeedIsThatOfTheScene) {
         << "the estimate is there all the same";
 }
 
-// If the distance is not a multiple of speed times step, the speed is reduced slightly, never increased.
+/// Way of the plate, or strain of the cell, over the time of all moves.
+double mean_speed(const Course& course) {
+    double way = 0, time = 0;
+    for (const StepInterval& interval : course.intervals) {
+        const double rate = std::abs(interval.plate_velocity) + std::abs(interval.strain_rate[2]);
+        if (rate == 0) continue;
+        way += rate * interval.steps * interval.step_part * time_step;
+        time += interval.steps * interval.step_part * time_step;
+        EXPECT_LE(interval.step_part, 1);
+    }
+    return way / time;
+}
+
+// Ways of 48, 1.1 and 0.14 steps. A tenth of a percent is left to whole steps.
+TEST(Protocol, WithoutAToleranceCloseScansDoNotSlowThePlate) {
+    for (const int scans : {3, 130, 1000})
+        for (const bool pauses : {false, true}) {
+            Replica replica = replica_of(1, scans, pauses);
+            replica.plate.speed = 0.7;
+            replica.protocol.pause = pauses ? 0.002 : 0;
+            const Course course(replica, 0);
+            EXPECT_EQ(course.scans.size(), 2u * scans);
+            EXPECT_NEAR(mean_speed(course), 0.7, 1.1e-3 * 0.7) << scans << ' ' << pauses;
+            if (!pauses) {
+                const double time = course.scans[scans - 1].time - course.scans[0].time;
+                EXPECT_NEAR(time, 0.1 / 0.7 * (scans - 1) / scans, 1.1e-3 * time);
+            }
+            replica.protocol.rate_tolerance = 1;
+            for (const StepInterval& interval : Course(replica, 0).intervals)
+                ASSERT_EQ(interval.step_part, 1) << "the speed is a maximum";
+        }
+}
+
+TEST(Protocol, WithoutAToleranceCloseScansDoNotSlowACell) {
+    Replica cell = replica_of(1, 1, false);
+    cell.box = {0.1, 0.1, ContainerShape::cell, 0.1};
+    cell.plate = {0.1, 0, 0.5};
+    Stage move;
+    move.strain_z = 0.05;
+    move.rate = 0.7;
+    move.scans = 65;
+    cell.programme = {move};
+    EXPECT_NEAR(mean_speed(Course(cell, 0)), 0.7, 1.1e-3 * 0.7) << "1.1 steps between two scans";
+}
+
+// If the distance is not a multiple of speed times step, steps are shorter; the speed is never higher.
 TEST(Protocol, NeverMovesFasterThanGiven) {
     Replica replica = replica_of(1, 7, true);
     replica.plate.speed = 0.37;

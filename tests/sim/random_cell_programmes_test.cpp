@@ -117,7 +117,7 @@ TEST(RandomCellProgrammes, EndAndScanAtThePrescribedValues) {
             result.steps = interval.steps;
             Strain strain = interval.strain;
             for (std::size_t k = 0; k < 6; ++k)
-                strain[k] += interval.strain_rate[k] * interval.steps * time_step;
+                strain[k] += interval.strain_rate[k] * interval.steps * interval.step_part * time_step;
             result.stress = spring_stress(strain);
             for (int axis = 0; axis < 3; ++axis) ASSERT_LE(strain[static_cast<std::size_t>(axis)], 0.378);
             if (runner.state().leg != leg) {
@@ -170,7 +170,8 @@ std::vector<Strain> scans_of_spring(ProtocolRunner& runner) {
         IntervalResult result;
         result.steps = interval.steps;
         Strain strain = interval.strain;
-        for (std::size_t k = 0; k < 6; ++k) strain[k] += interval.strain_rate[k] * interval.steps * time_step;
+        for (std::size_t k = 0; k < 6; ++k)
+            strain[k] += interval.strain_rate[k] * interval.steps * interval.step_part * time_step;
         result.stress = spring_stress(strain);
         if (runner.on_interval_done(result)) scans.push_back(strain);
     }

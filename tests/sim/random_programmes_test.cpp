@@ -105,7 +105,8 @@ TEST(RandomProgrammes, EndAndScanAtThePrescribedValues) {
             const StepInterval interval = runner.next([](const StepInterval&) { return 60; });
             ASSERT_GE(interval.steps, 1);
             ASSERT_LE(interval.steps, 60);
-            const double z = interval.plate_z + interval.plate_velocity * interval.steps * time_step;
+            const double z =
+                interval.plate_z + interval.plate_velocity * interval.steps * interval.step_part * time_step;
             ASSERT_GE(z, end - 1e-12);
             ASSERT_LE(z, start + 1e-12);
             IntervalResult result;

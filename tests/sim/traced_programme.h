@@ -42,7 +42,7 @@ inline Traced trace(const mcdem::Scene& scene, int r, Packing packing) {
         runner.set_time_step(dt);
         auto interval = runner.next([&](const auto& next) { return engine.max_interval(0, next); });
         const auto before = runner.state();
-        plate.deflect(interval, dt, engine.max_plate_move(0));
+        plate.deflect(interval, engine.time_step(0, interval), engine.max_plate_move(0));
         const auto result = engine.advance({interval}).front();
         plate.on_interval_done(result);
         const auto scan = runner.on_interval_done(result, plate.arrived(engine.max_plate_move(0)));

@@ -38,8 +38,8 @@ struct Told {
 
 class WholeRun {
 public:
-    WholeRun(Precision precision, const std::vector<Start>& starts)
-        : told(starts.size()), simulation_(device(), scene(precision, starts), packings(starts)) {}
+    WholeRun(Precision precision, const std::vector<Start>& starts, int slots = 16)
+        : told(starts.size()), simulation_(device(), scene(precision, starts, slots), packings(starts)) {}
 
     bool advance() { return simulation_.advance(tell_, fail_); }
     void advance(int rounds) {
@@ -64,8 +64,9 @@ private:
     const mcdem::Simulation::FailureSink fail_ = [](int r, const mcdem::Failure& failure) {
         ADD_FAILURE() << "replica " << r << ": " << failure.cause;
     };
-    static mcdem::Scene scene(Precision precision, const std::vector<Start>& starts) {
+    static mcdem::Scene scene(Precision precision, const std::vector<Start>& starts, int slots) {
         mcdem::Scene scene;
+        scene.slots = slots;
         scene.precision = precision;
         for (const Start& start : starts) scene.replicas.push_back(start.replica);
         return scene;

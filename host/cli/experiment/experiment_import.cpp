@@ -64,6 +64,7 @@ nlohmann::json request_of(const ImportCommand& command, const Experiment& known,
     const Recording& recording = known.recording;
     return {{"known",
              {{"box", {recording.box.size_x, recording.box.size_y}},
+              {"shape", name(recording.box.shape)},
               {"plate_start", recording.plate_start},
               {"youngs_modulus", material("grains.youngs_modulus")},
               {"poisson_ratio", material("grains.poisson_ratio")},

@@ -2,11 +2,17 @@
 
 #include <fmt/format.h>
 
+#include "cli/shell/messages.h"
 #include "scene/read/read_scene.h"
+#include "scene/read/scene_warnings.h"
 
 namespace mcdem::inline cli {
 
-Scene SceneOptions::read() const { return read_scene(file, overrides); }
+Scene SceneOptions::read() const {
+    Scene scene = read_scene(file, overrides);
+    for (const std::string& warning : scene_warnings(scene)) spdlog::warn("{}", warning);
+    return scene;
+}
 
 void add_scene_options(CLI::App& command, SceneOptions& options, const char* name, const char* help) {
     command.add_option(name, options.file, help)->required();

@@ -13,7 +13,7 @@
 #include "cli/shell/standard_streams.h"
 #include "core/stack.h"
 #include "core/version.h"
-#include "io/results.h"
+#include "io/run_packing.h"
 #include "scene/packing/read_packing.h"
 
 namespace mcdem::inline cli {
@@ -134,7 +134,7 @@ int run_cli(int argc, const char* const* argv) {
         hint_at_crashes();
         opencl_started = hint_at_crashes;
         kernel_cache_refused = [](const std::string& why) { spdlog::warn("{}", why); };
-        read_run_packing = packing_of_run;
+        read_run_packing = recorded_packing;
         return exit_code_of_output(command_line(argc, argv));
     } catch (const std::exception& error) {
         return report_error(error);

@@ -13,6 +13,7 @@
 #include "core/sha256.h"
 #include "metrics/estimate.h"
 #include "scene/packing/make_packing.h"
+#include "scene/packing/neighbour_slots.h"
 #include "scene/programme/programme_text.h"
 #include "scene/random.h"
 #include "scene/read/keys.h"
@@ -165,6 +166,8 @@ private:
                 diameter += trial.diameter_jitter * random.normal();
         }
         std::vector<Recording> recordings;
+        for (std::size_t r = 0; r < packings.size(); ++r)
+            batch.slots = std::max(batch.slots, slots_of(batch.replicas[r], packings[r]));
         for (std::size_t r = 0; r < packings.size(); ++r)
             recordings.push_back(begin_recording(batch.replicas[r], packings[r]));
         Simulation simulation(device_, batch, packings);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "core/errors.h"
@@ -13,6 +14,10 @@
 
 namespace mcdem::inline scene {
 namespace {
+
+/// Numbers have at least six digits in files, as C's %g prints them: each is right to half a unit of the
+/// last.
+constexpr double six_digits = 1e-5;
 
 template <class Number>
 std::optional<Number> whole_word(std::string_view word) {
@@ -62,7 +67,22 @@ GrainColumns GrainColumns::named(const std::vector<std::string>& names, const st
             diameter ? *diameter : *radius,
             diameter ? 1.0 : 2.0,
             first_of({"id"}),
-            first_of({"species", "type"})};
+            first_of({"species", "type"}),
+            diameter ? radius : std::nullopt,
+            first_of({"density"}),
+            first_of({"mass"})};
+}
+
+/// Density of a grain from its column or its mass.
+void GrainRows::add_density(const std::vector<std::string_view>& words, long line) {
+    const auto column = columns_.density ? columns_.density : columns_.mass;
+    if (!column) return;
+    const auto number = to_number(words[*column]);
+    if (!number || !(*number > 0))
+        problems_.add(line, fmt::format("{} must be a finite number > 0 [{}], got {}", names_[*column],
+                                        columns_.density ? "kg/m3" : "kg", quoted(words[*column])));
+    const double volume = std::numbers::pi / 6 * std::pow(packing_.diameter.back(), 3);
+    packing_.density.push_back(columns_.density ? number.value_or(1) : number.value_or(1) / volume);
 }
 
 /// The vector in three columns from `first` on.
@@ -93,6 +113,14 @@ void GrainRows::add(const std::vector<std::string_view>& words, long line) {
     }
     packing_.position.emplace_back(values[0], values[1], values[2]);
     packing_.diameter.push_back(columns_.diameters * values[3]);
+    if (columns_.radius) {
+        const auto radius = to_number(words[*columns_.radius]);
+        if (!radius || !(std::abs(2 * *radius - values[3]) <= 2 * six_digits * values[3]))
+            problems_.add(line, fmt::format("the diameter must be twice the radius, got {} and {}: correct "
+                                            "them, or leave one of the two columns out",
+                                            quoted(words[columns_.size]), quoted(words[*columns_.radius])));
+    }
+    add_density(words, line);
     if (columns_.species) add_species(packing_, words[*columns_.species]);
     if (columns_.velocity) packing_.velocity.push_back(vector(words, *columns_.velocity, "m/s", line));
     if (columns_.spin) packing_.angular_velocity.push_back(vector(words, *columns_.spin, "1/s", line));
@@ -100,12 +128,12 @@ void GrainRows::add(const std::vector<std::string_view>& words, long line) {
     lines_.push_back(line);
 }
 
-Packing GrainRows::packing() const {
+FilePacking GrainRows::packing() const {
     std::vector<std::size_t> order(size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return ids_[i]; });
     if (order.empty() && problems_.empty()) problems_.add("a packing must have at least 1 grain, got none");
-    Packing sorted;
+    FilePacking sorted;
     for (std::size_t k = 0; k < order.size(); ++k) {
         if (columns_.id && k > 0 && ids_[order[k]] == ids_[order[k - 1]])
             problems_.add(lines_[order[k]],
@@ -116,6 +144,7 @@ Packing GrainRows::packing() const {
         if (columns_.species) sorted.species.push_back(packing_.species[order[k]]);
         if (columns_.velocity) sorted.velocity.push_back(packing_.velocity[order[k]]);
         if (columns_.spin) sorted.angular_velocity.push_back(packing_.angular_velocity[order[k]]);
+        if (!packing_.density.empty()) sorted.density.push_back(packing_.density[order[k]]);
     }
     problems_.report();
     sorted.species_names = packing_.species_names;

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/packing.h"
+#include "scene/packing/file_packing.h"
 #include "scene/read/problems.h"
 
 namespace mcdem::inline scene {
@@ -26,9 +26,12 @@ struct GrainColumns {
     std::size_t x, y, z, size;
     double diameters = 1;  ///< diameters per `size`: 2 for a radius
     std::optional<std::size_t> id = {}, species = {};
+    std::optional<std::size_t> radius = {};               ///< beside a diameter: must agree with it
+    std::optional<std::size_t> density = {}, mass = {};   ///< [kg/m3], [kg]; a mass counts without a density
     std::optional<std::size_t> velocity = {}, spin = {};  ///< the first of three, along x, y and z
 
-    /// For columns x, y, z (or xu, yu, zu) and diameter, radius or r, optionally id and species or type.
+    /// For columns x, y, z (or xu, yu, zu) and diameter, radius or r, optionally id, species or type, density
+    /// and mass.
     /// Throws InputError.
     static GrainColumns named(const std::vector<std::string>& names, const std::string& file);
 };
@@ -41,15 +44,15 @@ public:
     void add(const std::vector<std::string_view>& words, long line);
     std::size_t size() const { return packing_.size(); }
     /// Throws InputError if there were any problems.
-    Packing packing() const;
+    FilePacking packing() const;
 
 private:
     Vec3 vector(const std::vector<std::string_view>& words, std::size_t first, const char* unit, long line);
-
+    void add_density(const std::vector<std::string_view>& words, long line);
     GrainColumns columns_;
     std::vector<std::string> names_;
     FileProblems& problems_;
-    Packing packing_;
+    FilePacking packing_;
     std::vector<double> ids_;
     std::vector<long> lines_;
 };

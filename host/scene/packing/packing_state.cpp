@@ -1,7 +1,9 @@
 #include "scene/packing/packing_state.h"
 
 #include <algorithm>
+#include <numeric>
 
+#include "core/law_range.h"
 #include "core/median.h"
 #include "scene/packing/cell_pairs.h"
 
@@ -44,11 +46,41 @@ DeepestPair deepest_pair(const Packing& packing, const Box& box, double height) 
     const double reach = std::min(4 * median(packing.diameter), *std::ranges::max_element(packing.diameter));
     CellList(inside, box, height, reach).for_each_pair([&](int i, int j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-        const double radii = (packing.diameter[a] + packing.diameter[b]) / 2;
-        const double overlap = 1 - apart(box, inside[a], inside[b]).norm() / radii;
+        const double one = packing.diameter[a] / 2, other = packing.diameter[b] / 2;
+        const double overlap =
+            relative_overlap(one + other - apart(box, inside[a], inside[b]).norm(), one, other);
         if (overlap > deepest.overlap) deepest = {std::min(a, b), std::max(a, b), overlap};
     });
     return deepest;
+}
+
+MostNeighbours most_neighbours(const Packing& packing, const Box& box, double height, double gap) {
+    MostNeighbours most;
+    if (packing.size() == 0) return most;
+    std::vector<Vec3> inside;
+    for (const Vec3& position : packing.position) inside.push_back(into_cell(box, position));
+    const double reach =
+        std::min(10 * median(packing.diameter), *std::ranges::max_element(packing.diameter)) + gap;
+    std::vector<std::size_t> count(packing.size(), 0);
+    for (std::size_t i = 0; i < packing.size(); ++i)
+        for (int wall = 0; wall < static_cast<int>(Wall::plate); ++wall)
+            if (has_wall(box, static_cast<Wall>(wall)))
+                count[i] += wall_distance(box, static_cast<Wall>(wall), height, inside[i]) <
+                            packing.diameter[i] / 2 + gap;
+    CellList(inside, box, height, reach).for_each_pair([&](int i, int j) {
+        const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+        const double within = (packing.diameter[a] + packing.diameter[b]) / 2 + gap;
+        if (apart(box, inside[a], inside[b]).squaredNorm() >= within * within) return;
+        ++count[a];
+        ++count[b];
+    });
+    const auto found = std::ranges::max_element(count);
+    return {static_cast<std::size_t>(found - count.begin()), *found};
+}
+
+double list_gap(const Numerics& numerics, const Packing& packing) {
+    const double sum = std::accumulate(packing.diameter.begin(), packing.diameter.end(), 0.0);
+    return (numerics.probe_gap + numerics.skin) * sum / (2 * static_cast<double>(packing.size()));
 }
 
 }  // namespace mcdem::scene

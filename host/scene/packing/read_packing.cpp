@@ -10,6 +10,7 @@
 #include "core/input_file.h"
 #include "core/look.h"
 #include "scene/packing/packing_fields.h"
+#include "scene/packing/stated_box.h"
 #include "scene/packing/table.h"
 
 namespace mcdem::inline scene {
@@ -24,7 +25,7 @@ public:
     DumpReader(std::string_view text, const std::string& source, std::optional<long> wanted)
         : source_(source), problems_(source), lines_(text), wanted_(wanted) {}
 
-    Packing read() {
+    FilePacking read() {
         auto line = lines_.next();
         while (line && !problems_.full()) {
             const std::string_view title = without_blanks(*line);
@@ -41,7 +42,9 @@ public:
         if (!grains_)
             throw InputError(fmt::format("{}: the frame must be one of its {} timesteps, {} to {}, got {}",
                                          source_, steps_.size(), steps_.front(), steps_.back(), *wanted_));
-        return grains_->packing();
+        FilePacking packing = grains_->packing();
+        packing.box = of_grains_;
+        return packing;
     }
 
 private:
@@ -51,11 +54,16 @@ private:
         if (title == "TIMESTEP") {
             step_ = whole_number("the timestep");
             count_.reset();
+            box_.reset();
         } else if (title.starts_with("NUMBER OF ")) {
             count_ = whole_number("the number of rows");
-        } else {  // bounds, units, time: not needed
+        } else {  // bounds; units and time are not needed
+            const long first = lines_.number() + 1;
+            std::vector<std::string_view> rows;
             auto line = lines_.next();
-            while (line && !line->starts_with(item)) line = lines_.next();
+            for (; line && !line->starts_with(item); line = lines_.next())
+                if (rows.size() < 3) rows.push_back(*line);
+            if (title.starts_with("BOX BOUNDS")) box_ = dump_box(title, rows, first, source_, problems_);
             return line;
         }
         return lines_.next();
@@ -77,6 +85,7 @@ private:
         const std::vector<std::string> names(words_.begin() + 1, words_.end());
         const bool is_wanted = !wanted_ || *wanted_ == *step_;
         if (is_wanted) grains_.emplace(GrainColumns::named(names, source_), names, problems_);
+        if (is_wanted) of_grains_ = box_;
         steps_.push_back(*step_);
         const long title_line = lines_.number();
         long found = 0;
@@ -105,6 +114,7 @@ private:
     std::vector<std::string_view> words_;
     std::vector<long> steps_;
     std::optional<GrainRows> grains_;  ///< of the requested frame, or the last one so far
+    std::optional<StatedBox> box_, of_grains_;
 };
 
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
@@ -112,15 +122,19 @@ bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')
 /// LAMMPS data files, line by line; `words` and `hint` belong to the current line.
 class LammpsReader {
 public:
-    LammpsReader(std::string_view text, const std::string& source) : lines_(text), problems_(source) {}
+    LammpsReader(std::string_view text, const std::string& source)
+        : source_(source), lines_(text), problems_(source) {}
 
-    Packing read() {
+    FilePacking read() {
         next_line();  // the first line is always a title
         while (!in_atoms_ && !problems_.full() && next_line()) read_header_line();
         while (in_atoms_ && !problems_.full() && next_line()) read_atom_line();
         check_whole();
+        const auto box = box_.box(source_, problems_);
         problems_.report();
-        return grains_.packing();
+        FilePacking packing = grains_.packing();
+        packing.box = box;
+        return packing;
     }
 
 private:
@@ -134,6 +148,7 @@ private:
     }
 
     void read_header_line() {
+        if (box_.read(words_, lines_.number(), problems_)) return;
         if (words_.size() == 2 && words_[1] == "atoms") {
             const auto count = to_whole_number(words_[0]);
             if (promised_)
@@ -186,13 +201,15 @@ private:
                                       *promised_ > static_cast<long>(grains_.size()) ? "; truncated?" : ""));
     }
 
+    const std::string& source_;
     TextLines lines_;
     FileProblems problems_;
+    DataBox box_;
     std::vector<std::string_view> words_, hint_;
     bool in_atoms_ = false;
     std::optional<long> promised_;
     long promised_line_ = 0;
-    GrainRows grains_{{.x = 4, .y = 5, .z = 6, .size = 2, .id = 0, .species = 1},
+    GrainRows grains_{{.x = 4, .y = 5, .z = 6, .size = 2, .id = 0, .species = 1, .density = 3},
                       {"id", "type", "diameter", "density", "x", "y", "z"},
                       problems_};
 };
@@ -236,11 +253,11 @@ bool has_vector(const Table& table, const std::array<std::size_t, 3>& columns, s
 
 bool looks_like_dump(std::string_view text) { return without_blanks(text.substr(0, 1000)).starts_with(item); }
 
-Packing read_dump_packing(std::string_view text, const std::string& source, std::optional<long> step) {
+FilePacking read_dump_packing(std::string_view text, const std::string& source, std::optional<long> step) {
     return DumpReader(text, source, step).read();
 }
 
-Packing read_lammps_packing(std::string_view text, const std::string& source) {
+FilePacking read_lammps_packing(std::string_view text, const std::string& source) {
     return LammpsReader(text, source).read();
 }
 
@@ -255,7 +272,7 @@ bool looks_like_yade(std::string_view text) {
            std::ranges::all_of(words, [](auto word) { return to_number(word).has_value(); });
 }
 
-Packing read_yade_packing(std::string_view text, const std::string& source) {
+FilePacking read_yade_packing(std::string_view text, const std::string& source) {
     FileProblems problems(source);
     std::vector<std::string> names{"x", "y", "z", "r"};
     std::optional<GrainRows> grains;
@@ -284,23 +301,25 @@ Packing read_yade_packing(std::string_view text, const std::string& source) {
     return grains->packing();
 }
 
-Packing read_csv_packing(const std::string& text, const std::string& source, std::optional<long> wanted) {
+FilePacking read_csv_packing(const std::string& text, const std::string& source, std::optional<long> wanted) {
     FileProblems problems(source);
-    Table table(
-        source, {"x_m", "y_m", "z_m", "diameter_m"}, text.size(), problems,
-        {"frame", "species", "type", "vx_m_s", "vy_m_s", "vz_m_s", "spin_x_1_s", "spin_y_1_s", "spin_z_1_s"},
-        &text);
+    Table table(source, {"x_m", "y_m", "z_m", "diameter_m"}, text.size(), problems,
+                {"frame", "species", "type", "vx_m_s", "vy_m_s", "vz_m_s", "spin_x_1_s", "spin_y_1_s",
+                 "spin_z_1_s", "radius_m", "density_kg_m3"},
+                &text);
     const bool has_frames = table.has(4), has_species = table.has(5) || table.has(6);
     const std::size_t species_column = table.has(5) ? 5 : 6;
     if (wanted && !has_frames && problems.empty())
         problems.add("must have a column frame where packing.frame is given, got none");
     GrainColumns columns{.x = 0, .y = 1, .z = 2, .size = 3};
     if (has_species) columns.species = 4;
+    if (table.has(13)) columns.radius = 11;
+    if (table.has(14)) columns.density = 12;
     if (has_vector(table, {7, 8, 9}, "vx_m_s, vy_m_s and vz_m_s", problems)) columns.velocity = 5;
     if (has_vector(table, {10, 11, 12}, "spin_x_1_s, spin_y_1_s and spin_z_1_s", problems)) columns.spin = 8;
     GrainRows grains(columns,
                      {"x", "y", "z", "diameter", "species", "vx_m_s", "vy_m_s", "vz_m_s", "spin_x_1_s",
-                      "spin_y_1_s", "spin_z_1_s"},
+                      "spin_y_1_s", "spin_z_1_s", "radius", "density"},
                      problems);
     std::set<long> frames;
     while (!problems.full() && table.next()) {
@@ -311,7 +330,7 @@ Packing read_csv_packing(const std::string& text, const std::string& source, std
         const std::string_view species = table.text(species_column);
         std::vector<std::string_view> words{table.text(0), table.text(1), table.text(2), table.text(3),
                                             species};
-        for (std::size_t column = 7; column < 13; ++column) words.push_back(table.text(column));
+        for (std::size_t column = 7; column < 15; ++column) words.push_back(table.text(column));
         grains.add(words, table.line());
         if (has_species && species.empty()) table.problem("the species must be a name or a number, got none");
     }
@@ -321,7 +340,7 @@ Packing read_csv_packing(const std::string& text, const std::string& source, std
     return grains.packing();
 }
 
-Packing read_packing(const std::filesystem::path& file, std::optional<long> frame) {
+FilePacking read_packing(const std::filesystem::path& file, std::optional<long> frame) {
     if (!is_there(file))
         throw InputError(fmt::format("{}: must be a packing, got no such file", file.string()));
     if (!is_file(file))

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/packing.h"
+#include "scene/packing/file_packing.h"
 
 namespace mcdem::inline scene {
 
@@ -16,26 +16,29 @@ inline constexpr long largest_packing = 10'000'000;
 /// LIGGGHTS/LAMMPS, Yade's text (`x y z r`), or a LIGGGHTS/LAMMPS data file. `frame`: timestep of a dump
 /// (default: the last), or frame of an experiment's grains.csv or of a run (default: the first). Throws
 /// InputError.
-Packing read_packing(const std::filesystem::path& file, std::optional<long> frame = {});
+FilePacking read_packing(const std::filesystem::path& file, std::optional<long> frame = {});
 
 /// Reads a run.h5. The scene layer does not use HDF5; programs set this to the reader of io.
-using RunPackingReader = Packing (*)(const std::filesystem::path& file, std::optional<long> frame);
+using RunPackingReader = FilePacking (*)(const std::filesystem::path& file, std::optional<long> frame);
 inline RunPackingReader read_run_packing = nullptr;
 
 /// LIGGGHTS/LAMMPS data file, atom style sphere or granular: lines `id type diameter density x y z` in its
-/// `Atoms` section, in metres. Grains are numbered from 0 in the order of the file's ids. Density, bounds and
-/// velocities are ignored: the scene sets the first two, and grains start at rest.
-Packing read_lammps_packing(std::string_view text, const std::string& source);
+/// `Atoms` section, in metres. Grains are numbered from 0 in the order of the file's ids. Velocities are
+/// ignored; density and bounds are returned for comparison with the scene, which sets them.
+FilePacking read_lammps_packing(std::string_view text, const std::string& source);
 
 /// CSV with the columns x_m, y_m, z_m, diameter_m in any order, optionally frame, species or type, vx_m_s,
-/// vy_m_s, vz_m_s (initial velocity) and spin_x_1_s, spin_y_1_s, spin_z_1_s (initial angular velocity); other
-/// columns, such as `grain`, are ignored. Grains are numbered from 0 in the order of the lines.
-Packing read_csv_packing(const std::string& text, const std::string& source, std::optional<long> frame = {});
+/// vy_m_s, vz_m_s (initial velocity), spin_x_1_s, spin_y_1_s, spin_z_1_s (initial angular velocity), radius_m
+/// and density_kg_m3; other columns, such as `grain`, are ignored. Grains are numbered from 0 in the order of
+/// the lines.
+FilePacking read_csv_packing(const std::string& text, const std::string& source,
+                             std::optional<long> frame = {});
 
 // Detection by the first lines. Yade's text may be truncated anywhere.
 bool looks_like_dump(std::string_view text);
-Packing read_dump_packing(std::string_view text, const std::string& source, std::optional<long> step = {});
+FilePacking read_dump_packing(std::string_view text, const std::string& source,
+                              std::optional<long> step = {});
 bool looks_like_yade(std::string_view text);
-Packing read_yade_packing(std::string_view text, const std::string& source);
+FilePacking read_yade_packing(std::string_view text, const std::string& source);
 
 }  // namespace mcdem::scene

@@ -13,7 +13,8 @@ namespace mcdem::inline scene {
 
 /// Everything that keys can set, before copies are made: the run, and one replica.
 struct Settings {
-    Scene run;
+    Settings() { run.slots = 0; }
+    Scene run;  ///< its slots are 0 until they are known
     Replica replica;
     GeneratedPacking generated;
     std::string packing_file;  ///< empty: generated

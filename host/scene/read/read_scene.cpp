@@ -32,6 +32,7 @@ public:
         problems_.report();
         Scene scene = settings_.run;
         scene.text = document_.text();
+        if (scene.slots == 0) scene.slots = slots_;
         scene.replicas = make_replicas(combinations_);
         return scene;
     }
@@ -232,6 +233,7 @@ private:
                     document_.place_of("batch.replicas"),
                     "batch.replicas must be 1 where packing.file is given without packing.position_jitter: "
                     "all copies would be identical");
+            if (problems_.empty()) slots_ = std::max(slots_, slots_needed(settings, files));
             grains = std::max(grains, grain_count(settings, files));
             if (static_cast<double>(grains * combinations_.size()) > max_grains) break;
         }
@@ -244,6 +246,7 @@ private:
     std::set<std::string, std::less<>> bad_;  ///< keys with problems of their own
     std::vector<Variation> variations_;
     std::vector<Combination> combinations_;
+    int slots_ = 16;  ///< enough for all replicas
 };
 
 }  // namespace

@@ -9,7 +9,9 @@
 #include "core/errors.h"
 #include "scene/packing/generate_packing.h"
 #include "scene/packing/make_packing.h"
+#include "scene/packing/neighbour_slots.h"
 #include "scene/packing/read_packing.h"
+#include "scene/packing/stated_box.h"
 #include "scene/programme/cell_path.h"
 #include "scene/read/resolve_species.h"
 
@@ -239,9 +241,31 @@ std::vector<CrossProblem> cross_problems(const Settings& settings,
 
 namespace {
 
-std::vector<std::string> problems_of_species(Packing packing, const Settings& settings) {
+/// The file's density must be that of the scene, or that minus the fluid's, which some codes use for both.
+Found other_density(const FilePacking& packing, const Settings& settings) {
+    constexpr double rounding = 1e-4;  // six digits of a density, or of a mass and a cubed diameter
+    const Replica& replica = settings.replica;
+    for (std::size_t i = 0; i < packing.density.size(); ++i) {
+        const std::size_t s = packing.species_of(i);
+        const GrainMaterial& material =
+            replica.species.empty() ? replica.grains : replica.species[s].material;
+        const double stated = packing.density[i];
+        const auto is = [&](double value) { return std::abs(stated - value) <= rounding * stated; };
+        if (is(material.density) || is(material.excess_density)) continue;
+        const std::string key =
+            replica.species.empty() ? "grains.density" : fmt::format("species.{}.density", s + 1);
+        return fmt::format(
+            "{}: the density of grain {}, counted from 0, must be {} = {} kg/m3 of the scene, or its excess "
+            "density {}, got {:.9g}: set {} = {:.9g}, or correct the file",
+            settings.packing_file, i, key, material.density, material.excess_density, stated, key, stated);
+    }
+    return std::nullopt;
+}
+
+std::vector<std::string> problems_of_species(FilePacking packing, const Settings& settings) {
     try {
         assign_species(packing, settings.replica, settings.packing_file);
+        if (const auto other = other_density(packing, settings)) return {*other};
         return {};
     } catch (const InputError& error) {
         return error.problems();
@@ -256,13 +280,47 @@ Found deep_overlap(const Settings& settings, CheckedFile& file) {
     if (file.deepest->overlap <= replica.numerics.overlap_limit) return std::nullopt;
     return fmt::format(
         "{}: grains must overlap by at most numerics.overlap_limit = {} of the sum of their radii, got "
-        "{:.2g} for "
+        "{:.2g} (of unequal grains times the ratio of the radii) for "
         "grains {} and {}, counted from 0: is one of them listed twice, or a diameter too large?",
         settings.packing_file, replica.numerics.overlap_limit, file.deepest->overlap, file.deepest->first,
         file.deepest->second);
 }
 
+MostNeighbours neighbours_in_file(const Settings& settings, CheckedFile& file) {
+    const Replica& replica = settings.replica;
+    const double gap = list_gap(replica.numerics, file.packing);
+    const auto [place, is_new] = file.neighbours.try_emplace(gap);
+    if (is_new) {
+        const PlateFace plate = plate_face(replica, replica.plate.start);
+        place->second = most_neighbours(file.packing, replica.box, plate.z, gap);
+    }
+    return place->second;
+}
+
+/// The engine would stop at the first step.
+Found too_many_neighbours(const Settings& settings, CheckedFile& file) {
+    const auto [grain, count] = neighbours_in_file(settings, file);
+    const int most = settings.run.slots == 0 ? most_slots : settings.run.slots;
+    if (count <= static_cast<std::size_t>(most)) return std::nullopt;
+    const std::string found =
+        fmt::format("{}: a grain must have at most {} near neighbours{}, got {} for grain {}, counted from 0",
+                    settings.packing_file, most, most == most_slots ? "" : " (numerics.slots)", count, grain);
+    if (count > most_slots) return fmt::format("{}: {}", found, widest_sizes);
+    return fmt::format("{}: set numerics.slots = {}, or leave it out", found, slots_of_packing(count));
+}
+
 }  // namespace
+
+int slots_needed(const Settings& settings, CheckedFiles& files) {
+    if (settings.packing_file.empty())
+        return has_sizes(settings.replica) ? slots_for(expected_neighbours(settings.generated.diameter_mean,
+                                                                           settings.generated.diameter_max,
+                                                                           settings.replica.numerics))
+                                           : 0;
+    const auto found = files.find({settings.packing_file, settings.packing_frame});
+    if (found == files.end() || !found->second.problems.empty()) return 0;
+    return slots_of_packing(neighbours_in_file(settings, found->second).count);
+}
 
 std::vector<std::string> packing_file_problems(const Settings& settings, CheckedFiles& files) {
     if (settings.packing_file.empty()) return {};
@@ -279,12 +337,17 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
         }
     }
     if (!file.problems.empty()) return file.problems;
+    if (auto found = compare_box(file.packing, file.packing.box, settings.replica.box);
+        !found.problems.empty())
+        return found.problems;
     if (auto problems = problems_of_species(file.packing, settings); !problems.empty()) return problems;
     auto problems =
         packing_problems(file.packing, settings.replica.box,
                          plate_face(settings.replica, settings.replica.plate.start), settings.packing_file);
     if (problems.empty())
         if (auto deep = deep_overlap(settings, file)) problems.push_back(*deep);
+    if (problems.empty())
+        if (auto many = too_many_neighbours(settings, file)) problems.push_back(*many);
     try {
         expect_room(settings.replica, file.packing);
     } catch (const InputError& error) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/packing/file_packing.h"
 #include "scene/packing/packing_state.h"
 #include "scene/read/keys.h"
 
@@ -20,9 +21,10 @@ struct CrossProblem {
 struct CheckedFile {
     std::size_t count = 0;
     double smallest = 0;  ///< diameter [m]
-    Packing packing;
-    std::optional<DeepestPair> deepest;  ///< if its grains are in their container
-    std::vector<std::string> problems;   ///< problems when reading, each with its place
+    FilePacking packing;
+    std::optional<DeepestPair> deepest;           ///< if its grains are in their container
+    std::map<double, MostNeighbours> neighbours;  ///< by their gap [m]; likewise
+    std::vector<std::string> problems;            ///< problems when reading, each with its place
 };
 using CheckedFiles = std::map<std::pair<std::string, int>, CheckedFile>;
 
@@ -41,6 +43,10 @@ std::vector<CrossProblem> programme_problems(const Settings& settings, const std
 
 /// Reads the packing file of the setting, if any, and checks that it fits. Problems name lines of the file.
 std::vector<std::string> packing_file_problems(const Settings& settings, CheckedFiles& files);
+
+/// Slots that a replica needs (scene/packing/neighbour_slots.h); 0 if it is unknown. Its file must have been
+/// checked.
+int slots_needed(const Settings& settings, CheckedFiles& files);
 
 /// Number of grains of one replica.
 std::size_t grain_count(const Settings& settings, const CheckedFiles& files);

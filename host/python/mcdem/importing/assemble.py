@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from ..files import write_whole
+from .boxes import check_boxes
 from .contacts import import_contacts
 from .grains import import_grains
 from .mapping import WALLS
@@ -23,6 +24,7 @@ class Known:
     """Values that are not in the tables, including the scale that distinguishes millimetres from metres."""
 
     box: tuple = (0.0, 0.0)  # [m]; 0: unknown
+    shape: str = "box"  # or cylinder, periodic
     plate_start: float = np.nan
     youngs_modulus: float = np.nan  # of the grains [Pa]
     poisson_ratio: float = 0.4
@@ -58,6 +60,7 @@ class _Assembly:
         else:
             self.plate = import_plate(plates[0], start, self.problems, self.known.programme)
         self.grains = import_grains(grains, self.problems)
+        check_boxes(self.grains, self.known, self.problems, self.notes)
         if contacts and not grains:
             self.problems.add("grains", "must be a table of the grains, for contacts name them, got none")
         self.problems.report()

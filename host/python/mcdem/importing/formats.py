@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..files import temporary_folder
+from .boxes import data_box, dump_box, xyz_box
 from .problems import quoted, to_number
 from .text import Form, numbers_of
 
@@ -27,7 +28,7 @@ def parse_dump(table, lines):
     """`dump custom` (ITEM: ATOMS) and `dump local` (ITEM: ENTRIES), any number of frames, each with the names of its columns."""
     table.begin("dump", lines, Form(" ", "."))
     items = [n for n, line in enumerate(lines, 1) if line.lstrip().startswith(ITEM)] + [len(lines) + 1]
-    step = count = names = None
+    step = count = names = box = None
     for line, end in zip(items, items[1:]):
         what = lines[line - 1].strip().removeprefix(ITEM)
         if what == "TIMESTEP" or what.startswith("NUMBER OF "):
@@ -37,7 +38,9 @@ def parse_dump(table, lines):
                 said = "the timestep" if what == "TIMESTEP" else "the number of rows"
                 _wrong(table, min(line + 1, len(lines)), f"{said} must be a whole number >= 0, got {quoted(value)}")
             if what == "TIMESTEP":
-                step, count = count, None
+                step, count, box = count, None, None
+        elif what.startswith("BOX BOUNDS"):
+            box = dump_box(table, lines, what, line + 1)
         elif what.startswith(("ATOMS", "ENTRIES")):
             columns = what.split()[1:]
             if step is None:
@@ -50,6 +53,7 @@ def parse_dump(table, lines):
             if columns != names:
                 _wrong(table, line, f"the columns must be those of the first frame, {' '.join(names)}, got {' '.join(columns)}")
             table.frames.append((step, table.rows))
+            table.boxes.append(box)
             for number in range(line + 1, end):
                 cells = lines[number - 1].split()
                 if cells and len(cells) != len(names):
@@ -87,6 +91,7 @@ def parse_data(table, lines):
             rows.append(values[:7])
     if not rows or promised != len(rows):
         raise InputError(f"{table.file}: must have the {promised} atoms that it promises, at least 1, got {len(rows)}; truncated?")
+    table.boxes.append(data_box(table, lines, start))
     rows = np.array(rows)
     _, order = np.unique(rows[:, 0], return_index=True)
     if len(order) < len(rows):
@@ -111,6 +116,7 @@ def parse_xyz(table, text):
             if not math.isfinite(step := float(step)):
                 raise ValueError(f"the step of a frame must be a finite number, got {step}")
             table.frames.append((step, rows))
+            table.boxes.append(xyz_box(atoms, "pbc=" in text))
             frames.append(values)
             rows += len(values)
     except (Exception, SystemExit) as error:  # ASE has no exception type for invalid files

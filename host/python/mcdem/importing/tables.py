@@ -22,6 +22,7 @@ class Table:
         self.named, self.columns = False, []  # whether the file has names of columns; otherwise they are "column 1", ..
         self.repeated = set()  # names that several columns have
         self.frames = []  # of a dump: (timestep, first row)
+        self.boxes = []  # of each frame, or of the file; None: not said
         self._places = {}  # of columns by their names
         self.line_of = []  # of each row, from 1; empty if rows are not lines
         self._values = array.array("d")  # row by row; NaN: not a finite number

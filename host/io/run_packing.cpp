@@ -1,0 +1,47 @@
+#include "io/run_packing.h"
+
+#include <fmt/format.h>
+
+#include "core/container.h"
+#include "core/errors.h"
+#include "io/results.h"
+
+namespace mcdem::inline io {
+namespace {
+
+/// The container of a scan; that of a cell at its strain.
+StatedBox box_of(const Recording& recording, const Scan& scan, const std::filesystem::path& file) {
+    const Box box = deformed(recording.box, scan.strain);
+    StatedBox stated;
+    stated.where = fmt::format("{}, frame {}", file.string(), scan.frame);
+    stated.size = {box.size_x, box.size_y, is_cell(box) ? box.height : scan.plate_z};
+    stated.tilt_xy = box.tilt_xy, stated.tilt_xz = box.tilt_xz, stated.tilt_yz = box.tilt_yz;
+    stated.shape = box.shape;
+    return stated;
+}
+
+}  // namespace
+
+FilePacking recorded_packing(const std::filesystem::path& file, std::optional<long> frame) {
+    RunReader reader(file);
+    const auto& recordings = reader.run().recordings;
+    if (recordings.size() != 1)
+        throw InputError(
+            fmt::format("{}: must hold one replica where it is a packing, got {}: make an experiment of one "
+                        "(mcdem experiment from-run), and read its grains.csv",
+                        file.string(), recordings.size()));
+    const Recording& recording = recordings.front();
+    for (std::size_t s = 0; s < recording.scans.size(); ++s) {
+        if (frame && recording.scans[s].frame != *frame) continue;
+        Scan scan = reader.read_scan(0, s);
+        if (!scan.position.empty())
+            return {
+                {std::move(scan.position), recording.diameter, recording.species, recording.species_names},
+                box_of(recording, scan, file)};
+        if (frame) break;
+    }
+    throw InputError(fmt::format("{}: must hold positions of {}, got none: run with output.positions = true",
+                                 file.string(), frame ? fmt::format("frame {}", *frame) : "a frame"));
+}
+
+}  // namespace mcdem::io

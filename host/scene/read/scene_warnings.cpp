@@ -1,0 +1,94 @@
+#include "scene/read/scene_warnings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "scene/packing/neighbour_slots.h"
+#include "scene/packing/packing_state.h"
+#include "scene/packing/read_packing.h"
+#include "scene/packing/stated_box.h"
+
+namespace mcdem::inline scene {
+namespace {
+
+/// Overlaps beyond this part of a diameter are those of a loaded packing. Weight and errors of measured
+/// positions cause less: 0.028 in the measured packing of hydrogel grains at rest.
+constexpr double loaded = 0.03;
+
+/// What the contacts of a replica remember.
+std::vector<std::string> memory_of_contacts(const Replica& replica) {
+    const Effects& effects = replica.effects;
+    std::vector<std::string> all;
+    if (replica.contact.friction_law != FrictionLaw::saturated || effects.friction_history > 0)
+        all.emplace_back("friction springs");
+    if (effects.plasticity > 0) all.emplace_back("plasticity");
+    if (effects.viscoelasticity > 0) all.emplace_back("viscoelasticity");
+    if (effects.rolling_resistance > 0) all.emplace_back("rolling resistance");
+    return all;
+}
+
+/// A packing file that was read, with the deepest overlap over the smaller diameter in the first of its
+/// scenes.
+struct ReadFile {
+    FilePacking packing;
+    double overlap = 0;
+};
+
+ReadFile read_file_of(const PackingFile& file, const Replica& replica) {
+    ReadFile read{read_packing(file.path, file.step)};
+    const PlateFace plate = plate_face(replica, replica.plate.start);
+    read.overlap = packing_state(read.packing, replica.box, plate).relative_overlap;
+    return read;
+}
+
+/// A loaded packing whose contacts begin without a history; empty if there is nothing to say.
+std::string lost_history(const Replica& replica, double overlap, const std::string& file) {
+    const std::vector<std::string> memory = memory_of_contacts(replica);
+    if (memory.empty() || !(overlap > loaded)) return "";
+    return fmt::format(
+        "{}: grains overlap by up to {:.2g} % of a diameter, but the history of their contacts is not in the "
+        "file "
+        "({}): it starts anew, and forces differ from those of the packing's own past",
+        file, 100 * overlap, fmt::join(memory, ", "));
+}
+
+/// Generated grains so unlike that the largest may have more neighbours than there can be slots; empty if
+/// not.
+std::string too_unlike(const Replica& replica, const GeneratedPacking& grains) {
+    const double most = expected_neighbours(grains.diameter_mean, grains.diameter_max, replica.numerics);
+    if (!(most > most_slots)) return "";
+    return fmt::format(
+        "packing: a grain of {:.3g} m among grains of {:.3g} m may have {:.0f} near neighbours, but "
+        "at most {} are possible (numerics.slots): {}",
+        grains.diameter_max, grains.diameter_mean, most, most_slots, widest_sizes);
+}
+
+}  // namespace
+
+std::vector<std::string> scene_warnings(const Scene& scene) {
+    std::map<std::pair<std::string, std::optional<long>>, ReadFile> files;
+    std::vector<std::string> warnings;
+    const auto add = [&](const std::string& warning) {
+        if (!warning.empty() && std::ranges::find(warnings, warning) == warnings.end())
+            warnings.push_back(warning);
+    };
+    for (const Replica& replica : scene.replicas) {
+        if (const auto* drawn = std::get_if<GeneratedPacking>(&replica.packing.source))
+            add(too_unlike(replica, *drawn));
+        const auto* file = std::get_if<PackingFile>(&replica.packing.source);
+        if (!file) continue;
+        const auto [place, is_new] = files.try_emplace({file->path, file->step});
+        if (is_new) place->second = read_file_of(*file, replica);
+        const auto& [packing, overlap] = place->second;
+        for (const std::string& warning : compare_box(packing, packing.box, replica.box).warnings)
+            add(warning);
+        add(lost_history(replica, overlap, file->path));
+    }
+    return warnings;
+}
+
+}  // namespace mcdem::scene
