@@ -26,7 +26,8 @@ int run(const DistributeCommand& command) {
 }  // namespace
 
 void add_distribute(CLI::App& app, int& exit_code) {
-    auto* sub = app.add_subcommand("distribute", "Compute the parts of a command's work on the devices of this machine, or with Dask");
+    auto* sub = app.add_subcommand(
+        "distribute", "Compute the parts of a command's work on the devices of this machine, or with Dask");
     auto command = std::make_shared<DistributeCommand>();
     sub->add_option("--scheduler", command->scheduler,
                     "Address (tls://.., tcp://..) or file of a running Dask scheduler, which needs "

@@ -41,8 +41,9 @@ std::vector<fs::path> draw_figures(const fs::path& folder, const nlohmann::order
     }
     expect_replaceable_figures(folder, names);
     replace_own(folder / values_file, FileKind::figure_values, figure_file(values));
-    if (const int code = run_python_module("mcdem.figures", {(folder / values_file).string()});
-        code != exit_done)
+    const int code = run_python_module("mcdem.figures", {(folder / values_file).string()});
+    if (code == exit_interrupted) throw Interrupted();
+    if (code != exit_done)
         throw RunError(fmt::format("{} could not be drawn: Python ended with exit code {}",
                                    (folder / values_file).string(), code));
     return figures;

@@ -22,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int not_found = 127;                                 ///< exit code of a Subprocess
 constexpr auto check_interval = std::chrono::milliseconds(5);  ///< of whether it has ended
 
 std::string variable(const char* name) {

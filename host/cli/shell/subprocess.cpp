@@ -16,8 +16,6 @@
 namespace mcdem::inline cli {
 namespace {
 
-constexpr int not_found = 127;
-
 /// `out`: descriptor for its standard output, or -1.
 pid_t start(std::vector<std::string>& words, int out) {
     std::vector<char*> arguments;

@@ -9,6 +9,8 @@
 
 namespace mcdem::inline cli {
 
+inline constexpr int not_found = 127;  ///< exit code if the program does not exist
+
 struct ProgramEnd {
     int exit_code = -1;  ///< -1 if a signal ended it
     int signal = 0;
