@@ -34,17 +34,18 @@ def check_looks(place, words, outputs=()):
     looks = operations(place, words, "stat")
     assert looks, words
     for number, (_, path) in enumerate(looks, 1):
-        for fault, reason in REASONS.items():
-            for output in outputs:
-                shutil.rmtree(place / output, ignore_errors=True)
-            done = mcdem(place, *words, fault=fault, fault_at=number, fault_kinds="stat")
-            told = done.stderr + done.stdout
-            if done.returncode != 0 or reason in told:
-                assert done.returncode in (0, 1) and reason in told, (words, path, fault, done)
-                assert path.rsplit("/", 1)[1] in told, (words, path, fault, done)
-                assert not any(words in done.stderr for words in MISTAKEN), (words, path, fault, done)
-            else:
-                assert done.stdout == plain.stdout, (words, path, fault, done)
+        fault, reason = list(REASONS.items())[number % len(REASONS)]
+        for output in outputs:
+            shutil.rmtree(place / output, ignore_errors=True)
+        done = mcdem(place, *words, fault=fault, fault_at=number, fault_kinds="stat")
+        told, seen = done.stderr + done.stdout, (words, path, fault, done)
+        if done.returncode != 0 or reason in told:
+            assert done.returncode in (0, 1) and reason in told, seen
+            # Each process counts its own looks, so a command that starts Python may have failed at another path.
+            assert path.rsplit("/", 1)[1] in told or "import" in words or "export" in words, seen
+            assert not any(mistaken in done.stderr for mistaken in MISTAKEN), seen
+        else:
+            assert done.stdout == plain.stdout, seen
 
 
 def results_are_looked_for(place):

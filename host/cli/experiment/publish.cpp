@@ -100,8 +100,8 @@ void move_files(const fs::path& work, const fs::path& out) {
     std::string sums;
     for (const std::string& name : names)
         sums += fmt::format("{}  {}\n", Sha256().add(read_file(work / name)).hex(), name);
-    replace_file(out / journal, sums);
     try {
+        replace_file(out / journal, sums);
         for (const std::string& name : names) move_file(work / name, out / name);
         fs::remove(out / journal);
     } catch (const std::exception& error) {
