@@ -107,14 +107,16 @@ INLINE void set_springs(Grain at, const int effects, Neighbours neighbour, lanes
 }
 
 /* Tangential velocity of the other surface relative to this one at the contact point, which is `arm` and
-   `arm_there` from the two centres. Both sides get the same bits, with opposite signs. */
-INLINE lanes3 sliding_velocity(Grain at, Neighbours neighbour, lanes arm, lanes arm_there, lanes separating) {
+   `arm_there` from the two centres; that of the centres times `arc` (Turn). Both sides get the same bits,
+   with opposite signs. */
+INLINE lanes3 sliding_velocity(Grain at, Neighbours neighbour, lanes arm, lanes arm_there, lanes arc) {
+    const lanes separating = dot3(neighbour.velocity, neighbour.normal);
     const lanes3 here = at.now.spin, there = neighbour.spin;
     const lanes3 turn = {add_alike(arm * here.x, arm_there * there.x),
                          add_alike(arm * here.y, arm_there * there.y),
                          add_alike(arm * here.z, arm_there * there.z)};
-    return subtract3(add_scaled3(neighbour.velocity, -separating, neighbour.normal),
-                     cross3(turn, neighbour.normal));
+    const lanes3 across = add_scaled3(neighbour.velocity, -separating, neighbour.normal);
+    return subtract3(scale3(arc, across), cross3(turn, neighbour.normal));
 }
 
 INLINE Contacts contact_forces(Grain at, const int effects, Neighbours neighbour, Displaced b, real elapsed,
@@ -149,10 +151,11 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours neighbour
         .limit = OF_PAIRS(at, friction, neighbour) * limiting,
         .damping = damping,
         .reduced_mass = pair.mass,
+        .turn = {.arc = R(1)},
         .touching = c.touching,
     };
     if (has_springs(replica, effects)) set_springs(at, effects, neighbour, c.radius, elapsed, memory, &terms);
-    const lanes3 sliding = sliding_velocity(at, neighbour, c.arm, arm_there, separating);
+    const lanes3 sliding = sliding_velocity(at, neighbour, c.arm, arm_there, terms.turn.arc);
     c.tangential =
         friction(replica, effects, terms, sliding, neighbour.normal, elapsed, &memory->spring, &c.rubbed);
     c.spring_energy = R(0);

@@ -41,11 +41,13 @@ INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there
 typedef struct {
     lanes3 middle; /* normal minus half its change: along the bisector of the normals before and after */
     lanes twist;   /* about the normal [rad] */
+    lanes arc;     /* arc of the centres' relative motion over its tangential part */
 } Turn;
 
 /* The turn in the time `elapsed` that ends now.
    The normal turns with the relative velocity of the centres. With the tangent s of its angle,
-   tan(angle/2) = s/2 (1 - s^2/4 + s^4/8 - ..).
+   tan(angle/2) = s/2 (1 - s^2/4 + s^4/8 - ..). The arc is 1 + s^2/6 times the step's tangential part; the
+   grains' own turns are arcs, too, so a pair that turns as one body does not slide.
    That of a plane wall does not turn. That of a cylinder's wall turns with the motion about the axis.
    The twist is that of the mean spin (omega_i + omega_j) / 2; a wall's spin is zero. A spring is the vector
    between two points that touched when it began, one on each body, and the end on a body turns with that
@@ -64,11 +66,11 @@ INLINE Turn turn_of(Grain at, Neighbours neighbour, real elapsed) {
         turns |= curved & AS_MASK(fabs(distance) > R(0));
     }
     const lanes3 spins = add3(neighbour.spin, at.now.spin);
-    const lanes rate = WHERE(turns, R(0.5) * elapsed / WHERE(turns, distance, R(1)), R(0));
-    const lanes square = rate * rate * dot3(across, across); /* s^2/4 */
-    const lanes bisecting = rate * (R(1) - square * (R(1) - R(2) * square));
+    const lanes half_slope = WHERE(turns, R(0.5) * elapsed / WHERE(turns, distance, R(1)), R(0));
+    const lanes square = half_slope * half_slope * dot3(across, across); /* s^2/4 */
+    const lanes bisecting = half_slope * (R(1) - square * (R(1) - R(2) * square));
     return (Turn){add_scaled3(neighbour.normal, -bisecting, across),
-                  R(0.5) * elapsed * dot3(spins, neighbour.normal)};
+                  R(0.5) * elapsed * dot3(spins, neighbour.normal), R(1) + square * (R(2) / R(3))};
 }
 
 /* Length that overlaps are compared with: R^2/R* with the smaller radius R, so that their ratio is (a/R)^2

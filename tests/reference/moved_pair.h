@@ -8,14 +8,20 @@ class MovedPair {
 public:
     static constexpr double radius = 0.01;
 
-    /// Grains of equal size without damping, `overlap` deep along x, and their friction law and effects.
-    static Start start(double overlap, double friction, FrictionLaw law, const mcdem::Effects& effects = {}) {
+    /// Grains of equal size without damping, `overlap` deep along x, and their friction law and effects. They
+    /// are in a large cell about `middle`: small coordinates have small rounding errors.
+    static Start start(double overlap, double friction, FrictionLaw law, const mcdem::Effects& effects = {},
+                       const Vec3& middle = Vec3::Zero()) {
         Replica replica = test_replica(ContactModel::independent);
         replica.grains = {1e6, 0.3, 1000, 0, friction, 1, 0};
-        replica.numerics.time_step = 5e-4;  // the grains hardly move in a step by the contact's own force
+        replica.numerics.time_step = 5e-5;  // the grains hardly move in a step by the contact's own force
         replica.contact.friction_law = law;
         replica.effects = effects;
-        return free_cluster(replica, {{0, 0, 0}, {2 * radius - overlap, 0, 0}}, {2 * radius, 2 * radius});
+        replica.box = {1, 1, mcdem::ContainerShape::cell};
+        replica.box.height = replica.plate.start = 1;
+        replica.plate.end = 0;
+        const Vec3 half(radius - overlap / 2, 0, 0);
+        return {replica, {{middle - half, middle + half}, {2 * radius, 2 * radius}}};
     }
     MovedPair(const KernelBuild& build, const Start& start) : batch_(build, start) {
         wanted_ = places();
@@ -47,8 +53,11 @@ public:
                  axis * angle / steps, axis * angle / steps);
         }
     }
-    /// Force on the first grain [N].
-    Vec3 force() const { return batch_.engine().state(0).contacts.at(0).force; }
+    /// Force on the first grain [N]; zero without contact.
+    Vec3 force() const {
+        const auto contacts = batch_.engine().state(0).contacts;
+        return contacts.empty() ? Vec3::Zero() : contacts[0].force;
+    }
     Vec3 normal() const {
         const auto x = places();
         return (x[1] - x[0]).normalized();

@@ -218,7 +218,11 @@ void StepReference::add_forces(ReferenceContact& contact, const Body& a, const B
         pair.friction * std::abs(std::max(normal, 0.0) - effects.net_force_friction * pull.force);
     const bool named_saturated = scene_.contact.friction_law == mcdem::FrictionLaw::saturated;
     const double h = effects.friction_history, mindlin = named_saturated ? h : 1 - h;
-    const Vec3 sliding = across(relative, e);
+    const bool springs = mindlin > 0 || effects.rolling_resistance > 0;
+    const Vec3 before = springs ? direction_before(contact, a, b, elapsed) : e;
+    const double slope = e.cross(before).norm() / e.dot(before);
+    // Springs follow the arc of the centres' motion, not its chord.
+    const Vec3 sliding = across(relative, e) + slope * slope / 6 * across(b.velocity - a.velocity, e);
     carry_springs(contact, a, b, elapsed, memory);
     if (mindlin > 0) contact.tangential = mindlin * mindlin_friction(limit, sliding, pair, elapsed, memory);
     if (mindlin < 1) contact.tangential += (1 - mindlin) * saturated_friction(limit, sliding, pair);
