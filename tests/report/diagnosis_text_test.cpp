@@ -84,10 +84,10 @@ TEST(DiagnosisText, bins_without_a_value_are_said) {
         HasSubstr("; friction between grains has no value in 4 of 8 bins (50 %), whose gap counts as not "
                   "explained by it; modulus of the grains has no value in 1 of 9 bins (11 %), which are "
                   "not compared"));
-    d.missing_bins = {{"adhesion", 4, 8, false}, {"cohesion", 4, 8, false}, {"", 2, 10, true}};
+    d.missing_bins = {{"adhesion", 4, 8, false}, {"plasticity", 4, 8, false}, {"", 2, 10, true}};
     EXPECT_THAT(
         line(d, "Limits"),
-        HasSubstr("; adhesion and cohesion have no value in 4 of 8 bins (50 %), whose gap counts as not "
+        HasSubstr("; adhesion and plasticity have no value in 4 of 8 bins (50 %), whose gap counts as not "
                   "explained by it; some runs of the scene as it stands have no value in 2 of 10 bins"));
 }
 
