@@ -34,8 +34,6 @@ TEST(Failures, NothingIsExcludedFromCompleteEvidence) {
 TEST(Failures, ACandidateThatRunsAwayIsExcludedAlone) {
     World w;
     w.evidence.library.effects[1].linear.setConstant(not_available);
-    EXPECT_THAT([&] { DiagnosisBuilder(w.evidence, {}); },
-                ThrowsMessage<InputError>(HasSubstr("0 observations in common")));
     EXPECT_THAT(leave_out_failures(w.evidence), ElementsAre(HasSubstr("friction: its runs failed")));
     const Diagnosis d = DiagnosisBuilder(w.evidence, {}).diagnosis();
     EXPECT_EQ(d.verdict, Verdict::effect);
@@ -48,13 +46,6 @@ TEST(Failures, ANuisanceThatRunsAwayIsExcludedAlone) {
     EXPECT_THAT(leave_out_failures(w.evidence), ElementsAre(HasSubstr("modulus: its runs failed")));
     EXPECT_THAT(w.evidence.nuisances, IsEmpty());
     EXPECT_NO_THROW(DiagnosisBuilder(w.evidence, {}));
-}
-
-TEST(Failures, CellsThatACandidateLacksAreNotCompared) {
-    World w;
-    w.evidence.library.effects[1].linear[5] = not_available;
-    EXPECT_THAT(leave_out_failures(w.evidence), IsEmpty());
-    EXPECT_EQ(gap_data(w.evidence).cells.size(), static_cast<std::size_t>(w.synthetic.known()) - 1);
 }
 
 TEST(Failures, ReplicatesWithoutNumbersAreExcluded) {

@@ -108,5 +108,25 @@ TEST(Signature, FailedRunsAreExcluded) {
     EXPECT_FALSE(learn_signature("adhesion", 0.5, 1, first, second).linear.array().isFinite().any());
 }
 
+// A force whose logarithm is observed may vanish with the larger amplitude, in some bins and pairs only.
+TEST(Signature, ACellWithoutAValueAtOneAmplitudeIsAStraightLineThroughTheOther) {
+    Eigen::MatrixXd first = differences(0.5, linear, curvature, 4),
+                    second = differences(1, linear, curvature, 4);
+    second(2, 1) = NAN;
+    first(0, 2) = NAN;
+    const Signature s = learn_signature("adhesion", 0.5, 1, first, second);
+    EXPECT_EQ(s.pairs(), 4);
+    EXPECT_NEAR(s.linear[0], linear[0], 1e-12);
+    EXPECT_NEAR(s.curvature[0], curvature[0], 1e-11);
+    EXPECT_NEAR(s.linear[1], linear[1] + 0.5 * curvature[1], 1e-12);
+    EXPECT_NEAR(s.linear[2], linear[2] + curvature[2], 1e-12);
+    EXPECT_EQ(s.curvature.tail(2).norm(), 0);
+    EXPECT_LT(s.spread().norm(), 1e-20);
+    second(1, 2) = NAN;
+    const Signature none = learn_signature("adhesion", 0.5, 1, first, second);
+    EXPECT_TRUE(std::isnan(none.linear[2]));
+    EXPECT_NEAR(none.linear[1], s.linear[1], 1e-12);
+}
+
 }  // namespace
 }  // namespace mcdem::signature

@@ -38,7 +38,8 @@ TEST(DiagnosisJson, has_the_documented_keys_in_their_order) {
     EXPECT_THAT(keys_of(json),
                 ElementsAre("verdict", "gap", "where", "causes", "explanation", "shrink", "detection_limits",
                             "not_measured", "seconds", "sentence", "where_threshold", "cells", "ranking",
-                            "nuisances", "not_testable", "refinements", "next", "packings", "provenance"));
+                            "nuisances", "check_first", "missing_bins", "not_testable", "refinements", "next",
+                            "packings", "provenance"));
     EXPECT_THAT(keys_of(json["gap"]), ElementsAre("detected", "p_value", "p_omnibus", "p_directed"));
     EXPECT_THAT(keys_of(json["where"][0]),
                 ElementsAre("observable", "phase", "displacement_mm", "region", "z_score", "z_score_refitted",

@@ -174,6 +174,7 @@ Diagnosis diagnosis(Verdict verdict) {
             d.packings = {{"packing_1", 0.003, 2.6e-4, 3e-5, 0.31, false},
                           {"packing_2", 0.02, 2.2e-4, 3e-5, 0.31, false}};
             explain(d, 0.79);
+            d.missing_bins = {{"friction", 4, 8, false}, {"modulus", 1, 9, true}};
             break;
         case Verdict::group:
             add_cells(d, 0.8, 0.6);
@@ -217,7 +218,9 @@ Diagnosis with_texts(Diagnosis d, const std::string& text) {
         if (cell.observable == "top_force") cell.observable = text;
     for (auto* causes : {&d.causes, &d.ranking})
         for (auto& cause : *causes) cause.effect = cause.unit = text, cause.group = {text, text};
-    for (auto& fit : d.nuisances) fit.name = fit.unit = text;
+    for (auto* fits : {&d.nuisances, &d.check_first})
+        for (auto& fit : *fits) fit.name = fit.unit = text;
+    for (auto& missing : d.missing_bins) missing.of = text;
     for (auto& limit : d.detection_limits) limit.effect = limit.unit = text, limit.group = {text, text};
     for (auto& step : d.next) step.what = text;
     for (auto& packing : d.packings) packing.experiment = text;

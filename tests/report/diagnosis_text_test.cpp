@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "report/diagnosis_samples.h"
 #include "report/verdict_line.h"
@@ -50,6 +51,44 @@ TEST_P(EveryVerdict, works_without_optional_parts) {
     d.verdict = GetParam();
     EXPECT_EQ(std::ranges::count(diagnosis_text(d), '\n'), 6);
     EXPECT_FALSE(verdict_sentence(d).empty());
+}
+
+// The main cause may be a parameter: nothing before it, and nothing that hides it.
+TEST(DiagnosisText, parameters_far_from_what_is_stated_are_the_first_line) {
+    for (const Verdict verdict : samples::all_verdicts) {
+        auto d = samples::diagnosis(verdict);
+        const auto headline = verdict_headline(d), sentence = verdict_sentence(d);
+        if (d.explanation) d.explanation->leaves_more_than_noise = false;
+        d.check_first = {{"modulus", std::log(1.81), 0.02, 0.05, "relative", true},
+                         {"strain_offset", -7e-4, 6e-5, 2e-4, "m", false}};
+        const auto check =
+            "check what is stated: modulus of the grains must be 81.0 ± 3.6 % higher than stated to fit (at "
+            "least 12 sigma) and zero of the displacement must be 0.700 ± 0.060 mm lower than stated to fit "
+            "(3.5 sigma); all that follows assumes these shifts.";
+        EXPECT_THAT(diagnosis_text(d), StartsWith("First:   " + std::string(check) + "\nGap:"));
+        EXPECT_EQ(verdict_sentence(d), "C" + std::string(check).substr(1) + " " + sentence);
+        EXPECT_EQ(verdict_headline(d),
+                  "Check first: modulus of the grains (at least 12 sigma) and 1 more. " + headline);
+        if (d.explanation) {
+            EXPECT_THAT(line(d, "How far"),
+                        HasSubstr("cannot be distinguished from noise, with the shifts of "
+                                  "parameters under First"));
+        }
+    }
+}
+
+TEST(DiagnosisText, bins_without_a_value_are_said) {
+    auto d = samples::diagnosis(Verdict::effect);
+    EXPECT_THAT(
+        line(d, "Limits"),
+        HasSubstr("; friction between grains has no value in 4 of 8 bins (50 %), whose gap counts as not "
+                  "explained by it; modulus of the grains has no value in 1 of 9 bins (11 %), which are "
+                  "not compared"));
+    d.missing_bins = {{"adhesion", 4, 8, false}, {"plasticity", 4, 8, false}, {"", 2, 10, true}};
+    EXPECT_THAT(
+        line(d, "Limits"),
+        HasSubstr("; adhesion and plasticity have no value in 4 of 8 bins (50 %), whose gap counts as not "
+                  "explained by it; some runs of the scene as it stands have no value in 2 of 10 bins"));
 }
 
 TEST(DiagnosisText, no_gap_lists_the_detection_limits) {

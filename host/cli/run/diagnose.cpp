@@ -144,7 +144,8 @@ void add_diagnose(CLI::App& app, int& exit_code) {
     sub->footer(
         "The scene describes the simulation; box, plate and scans are taken from the experiment. Prints the "
         "verdict in\n"
-        "six lines, and writes diagnosis.json, diagnosis.html and figures to DIR. Simulations are kept in\n"
+        "six lines, after one with stated parameters to check first if there are any, and writes\n"
+        "diagnosis.json, diagnosis.html and figures to DIR. Simulations are kept in\n"
         "DIR/simulations: nothing is computed twice, and the same command continues an interrupted "
         "diagnosis.\n"
         "Many devices or nodes can compute the simulations of the library in parts; --merge then does the "

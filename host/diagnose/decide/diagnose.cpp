@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "core/errors.h"
@@ -16,6 +17,8 @@
 namespace mcdem::inline diagnose {
 namespace {
 
+/// A parameter this far from its stated value, in sigmas of its prior, is outside its uncertainty.
+constexpr double far_out = 2.5;
 constexpr double worth_another_run =
     0.01;  ///< another run is worthwhile if the p of the remainder is smaller
 
@@ -50,7 +53,6 @@ bool at_limit(const Evidence& evidence, const Cause& cause) {
 
 std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const GapSpace& space,
                                        const Eigen::VectorXd& gap) {
-    constexpr double far_out = 2.5;  // prior sigmas
     const Eigen::VectorXd values = space.fit_nuisances(gap), errors = space.nuisance_errors();
     std::vector<NuisanceFit> fits;
     for (std::size_t k = 0; k < evidence.nuisances.size(); ++k) {
@@ -154,7 +156,8 @@ DiagnosisBuilder::DiagnosisBuilder(const Evidence& evidence, const Limits& limit
     findings_.proposals = propose(space_, data_, null_, statistics_, mean_of_);
     for (const Proposal& p : findings_.proposals)
         whole_.push_back(
-            {p.amplitudes, data_.in_range(space_.fit_nuisances(data_.gap - explained_by(p, data_)))});
+            {p.amplitudes, data_.in_range(space_.lacking(data_.lacking(p.candidates))
+                                              .fit_nuisances(data_.gap - explained_by(p, data_)))});
     step_.resize(whole_.size());
     runs_.resize(whole_.size());
     held_out_done_.resize(whole_.size());
@@ -191,7 +194,7 @@ void DiagnosisBuilder::confirm(std::size_t proposal, const Eigen::MatrixXd& runs
     step_[proposal] = mcdem::confirm(tried, data_, null_, places_, limits_.enough(tried.is_pair()),
                                      evidence_.observed, whole_[proposal].nuisances, runs);
     if (!step_[proposal]) return;
-    const Eigen::MatrixXd whole = whole_runs(runs, data_.cells);
+    const Eigen::MatrixXd whole = whole_runs(runs, without(data_.cells, data_.lacking(tried.candidates)));
     const Runs last{whole_[proposal], whole.colwise().mean().transpose(), static_cast<int>(whole.rows())};
     // If a signature is curved, its amplitude and that of the runs enclose the true one.
     for (std::size_t k = 0; k < tried.amplitudes.size(); ++k) {
@@ -257,7 +260,8 @@ void DiagnosisBuilder::confirm_held_out(std::size_t proposal, const Eigen::Matri
     held_out_done_[proposal] = true;
     Proposal& p = findings_.proposals[proposal];
     if (!by_likelihood(p))
-        p.confirmed_reduction = reduction_by_runs(data_, split_of(p), evidence_.observed, runs, mean_of_);
+        p.confirmed_reduction = reduction_by_runs(data_, split_of(p), evidence_.observed, runs, mean_of_,
+                                                  data_.lacking(p.candidates));
     decision_ = decide(findings_, limits_);
 }
 
@@ -272,9 +276,40 @@ double DiagnosisBuilder::refining_factor(std::size_t candidate, double most) con
     for (double factor = 2; factor < most; factor *= 2) {
         const Eigen::VectorXd left =
             numerics.signature->at(amplitude) - numerics.signature->at(std::min(1 - 1 / factor, amplitude));
-        if (0.5 * space_.whiten(left).squaredNorm() < unnoticed) return factor;
+        if (0.5 * space_.lacking(numerics.lacking).whiten(left).squaredNorm() < unnoticed) return factor;
     }
     return most;
+}
+
+Eigen::VectorXd DiagnosisBuilder::shifts_of(std::size_t proposal) const {
+    const Proposal& p = findings_.proposals[proposal];
+    Eigen::VectorXd shifts = runs_[proposal]
+                                 ? refit_part(data_, data_.cells, evidence_.observed - runs_[proposal]->mean,
+                                              p.candidates, runs_[proposal]->fit, runs_[proposal]->count)
+                                       .nuisances
+                                 : whole_[proposal].nuisances;
+    for (std::size_t k = 0; k < p.candidates.size(); ++k) {
+        const auto same =
+            std::ranges::find(evidence_.nuisances, findings_.names[p.candidates[k]], &NuisancePrior::name);
+        if (findings_.is_nuisance(p.candidates[k]) && same != evidence_.nuisances.end())
+            shifts[same - evidence_.nuisances.begin()] += p.amplitudes[k];
+    }
+    return data_.in_range(shifts);
+}
+
+std::vector<NuisanceFit> DiagnosisBuilder::check_first() const {
+    std::vector<NuisanceFit> list;
+    if (decision_.verdict == Verdict::no_gap) return list;
+    const Eigen::VectorXd shifts =
+        has_decided() ? shifts_of(decided()) : data_.in_range(space_.fit_nuisances(data_.gap));
+    for (NuisanceFit fit : nuisance_fits(evidence_, space_, data_.gap)) {
+        fit.value = shifts[std::ranges::find(evidence_.nuisances, fit.name, &NuisancePrior::name) -
+                           evidence_.nuisances.begin()];
+        fit.at_bound = data_.at_end_of_range(fit.value, fit.prior);
+        if (std::abs(fit.sigmas()) > far_out) list.push_back(fit);
+    }
+    std::ranges::stable_sort(list, std::greater(), [](const auto& fit) { return std::abs(fit.sigmas()); });
+    return list;
 }
 
 Diagnosis DiagnosisBuilder::diagnosis() const {
@@ -291,7 +326,9 @@ Diagnosis DiagnosisBuilder::diagnosis() const {
     const Causes causes(evidence_, findings_, decision_, statistics_);
     d.ranking = causes.ranking();
     d.nuisances = nuisance_fits(evidence_, space_, data_.gap);
+    d.check_first = check_first();
     d.detection_limits = detection_limits(space_, data_, null_, evidence_, limits_);
+    d.missing_bins = data_.missing;
     d.not_measured = not_measured(evidence_.observed, evidence_.library.grid);
     d.next = next_measurements(evidence_, data_, findings_, decision_, limits_);
     d.packings = packing_agreements(evidence_, data_, null_,

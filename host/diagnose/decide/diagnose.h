@@ -59,6 +59,9 @@ private:
     bool may_gain(std::size_t proposal) const;
     /// Computes the reductions of all proposals and of a placebo from signatures.
     void measure_reductions();
+    /// Shifts of the nuisances that the explanation of a proposal needs besides its effects.
+    Eigen::VectorXd shifts_of(std::size_t proposal) const;
+    std::vector<NuisanceFit> check_first() const;
     /// Whether the reduction is measured by likelihood: nuisances refitted within their priors leave no gap
     /// to measure otherwise.
     bool by_likelihood(const Proposal& proposal) const;

@@ -58,7 +58,9 @@ struct NuisanceFit {
     double value = 0, error = 0;  ///< shift from the scene's value; one sigma after the fit
     double prior = 0;             ///< one sigma before the fit
     std::string unit;
-    bool at_bound = false;  ///< the fit is at the limit of its prior
+    bool at_bound = false;  ///< beyond 2.5 sigmas of its prior; of Diagnosis::check_first: at the end of the
+                            ///< range that is tried
+    double sigmas() const { return prior > 0 ? value / prior : 0; }
 };
 
 struct GapReduction {
@@ -112,6 +114,16 @@ struct PackingAgreement {
     bool differs = false;  ///< the difference exceeds noise, corrected for the number of packings
 };
 
+/// Something without a value in some bins of the experiment.
+struct MissingBins {
+    /// An effect: only that effect is not compared there. A parameter, or one of several packings: then
+    /// nothing is compared there. Empty: some runs of the unchanged scene, likewise.
+    std::string of;
+    int count = 0, all = 0;  ///< bins that it lacks, of those that can be compared otherwise
+    bool for_all = false;    ///< nothing is compared there
+    double share() const { return all > 0 ? static_cast<double>(count) / all : 0; }
+};
+
 struct DetectionLimit {
     std::string effect, unit;
     double minimum_amplitude =
@@ -127,12 +139,16 @@ struct Diagnosis {
     double p_omnibus = 1, p_directed = 1;
     std::vector<WhereEntry> where;
     std::vector<WhereCell> cells;
-    std::vector<Cause> causes;   ///< best first; empty without a gap
-    std::vector<Cause> ranking;  ///< all candidates by score, for the figure
-    std::vector<NuisanceFit> nuisances;
+    std::vector<Cause> causes;           ///< best first; empty without a gap
+    std::vector<Cause> ranking;          ///< all candidates by score, for the figure
+    std::vector<NuisanceFit> nuisances;  ///< refitted without any effect
+    /// Parameters that the explanation, otherwise the best fit without an effect, shifts by more than their
+    /// uncertainty allows, the farthest first: all other results assume these shifts.
+    std::vector<NuisanceFit> check_first;
     std::optional<Explanation> explanation;  ///< empty without a gap
     std::optional<GapReduction> gap_reduction;
     std::vector<DetectionLimit> detection_limits;
+    std::vector<MissingBins> missing_bins;   ///< empty if everything has values in all bins
     std::vector<PackingAgreement> packings;  ///< empty for a single packing
     std::vector<Refinement> refinements;
     std::vector<NextStep> next;             ///< most useful first

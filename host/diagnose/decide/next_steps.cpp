@@ -67,10 +67,8 @@ std::vector<Measurement> measurements_of(const Evidence& evidence, const GapData
         list.push_back({"measure positions twice as accurately",
                         GapSpace(finer_noise(evidence, data.noise), mean_of, data.cells, data.free)});
     if (!not_measured(evidence.observed, evidence.library.grid).empty()) {
-        std::vector<const Signature*> used;
-        for (const Candidate& candidate : data.candidates) used.push_back(candidate.signature);
-        const auto all =
-            usable_cells(evidence.library.baseline, used, Eigen::VectorXd::Zero(data.mean.size()));
+        const auto all = usable_cells(evidence.library.baseline, parameters_of(evidence),
+                                      Eigen::VectorXd::Zero(data.mean.size()));
         if (all.size() > data.cells.size())
             list.push_back({"measure contact forces, with the positions of grains in the same frames",
                             GapSpace(data.noise, mean_of, all, data.free)});
@@ -79,7 +77,8 @@ std::vector<Measurement> measurements_of(const Evidence& evidence, const GapData
 }
 
 /// Squared distance, in sigmas, of a signature from the closest one of another candidate.
-double distance(const GapSpace& space, const Candidate& a, double amplitude, const Candidate& b) {
+double distance(const GapSpace& whole, const Candidate& a, double amplitude, const Candidate& b) {
+    const GapSpace& space = whole.lacking(lacking_cells({a, b}));
     const Eigen::VectorXd gap = a.signature->at(amplitude);
     return std::max(0.0, space.whiten(gap).squaredNorm() - 2 * fit_effect(space, b, gap).score);
 }
@@ -110,8 +109,9 @@ std::vector<NextStep> telling_apart(const std::vector<Measurement>& measurements
     std::vector<NextStep> steps;
     for (const Measurement& m : measurements) {
         const double squared = distance(m.space, data.candidates[leader], amplitude, data.candidates[*rival]);
-        const double gain =
-            0.5 * m.space.whiten(data.candidates[leader].signature->at(amplitude)).squaredNorm();
+        const double gain = 0.5 * m.space.lacking(data.candidates[leader].lacking)
+                                      .whiten(data.candidates[leader].signature->at(amplitude))
+                                      .squaredNorm();
         steps.push_back(
             {fmt::format("{}, to distinguish {} from {}", m.what, data.name(leader), data.name(*rival)),
              power_to_tell(squared, limits.group_margin(gain))});
@@ -123,8 +123,8 @@ std::vector<NextStep> telling_apart(const std::vector<Measurement>& measurements
 double more_information(const GapSpace& then, const GapSpace& now, const Candidate& candidate,
                         double amplitude) {
     const Eigen::VectorXd slope = candidate.signature->slope(amplitude);
-    const double known = now.whiten(slope).squaredNorm();
-    return known > 0 ? then.whiten(slope).squaredNorm() / known : 1;
+    const double known = now.lacking(candidate.lacking).whiten(slope).squaredNorm();
+    return known > 0 ? then.lacking(candidate.lacking).whiten(slope).squaredNorm() / known : 1;
 }
 
 /// Without rivals: resulting errors of the amplitude, or without a gap resulting detection limits.
@@ -188,6 +188,18 @@ bool has_rivals(const Findings& findings, const Decision& decision) {
 }
 
 }  // namespace
+
+std::optional<NextStep> check_of(const Diagnosis& diagnosis) {
+    if (diagnosis.check_first.empty()) return std::nullopt;
+    std::string keys;
+    for (const NuisanceFit& fit : diagnosis.check_first)
+        keys += (keys.empty() ? "" : ", ") + key_of(fit.name);
+    return NextStep{
+        fmt::format("check {}: measure again what the experiment states, correct the scene or the "
+                    "data, and diagnose again before anything else is changed",
+                    keys),
+        {}};
+}
 
 std::optional<std::size_t> proposal_of_rival(const Findings& findings, const Decision& decision) {
     if (!has_rivals(findings, decision)) return std::nullopt;

@@ -12,6 +12,9 @@ std::vector<NextStep> next_measurements(const Evidence& evidence, const GapData&
                                         const Findings& findings, const Decision& decision,
                                         const Limits& limits);
 
+/// To check the parameters of Diagnosis::check_first; nothing if there are none.
+std::optional<NextStep> check_of(const Diagnosis& diagnosis);
+
 /// The proposal of the nearest rival of the leading effect, if it was confirmed by runs too.
 std::optional<std::size_t> proposal_of_rival(const Findings& findings, const Decision& decision);
 

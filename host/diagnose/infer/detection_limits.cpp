@@ -25,16 +25,18 @@ double smallest_amplitude(const GapSpace& space, const Signature& signature, dou
 
 }  // namespace
 
-std::vector<DetectionLimit> detection_limits(const GapSpace& space, const GapData& data,
+std::vector<DetectionLimit> detection_limits(const GapSpace& whole, const GapData& data,
                                              const NullDistribution& null, const Evidence& evidence,
                                              const Limits& limits) {
     // Bonferroni correction for two tests.
     const double threshold = null.quantile(&GapStatistics::directed, 0.5 * limits.false_alarm);
     const double wanted = 0.5 * std::pow(std::sqrt(2 * threshold) + power_of_four_fifths, 2);
-    const GapSpace fixed(data.noise, static_cast<int>(evidence.baseline.rows()), data.cells, {});
+    const GapSpace whole_fixed(data.noise, static_cast<int>(evidence.baseline.rows()), data.cells, {});
     std::vector<DetectionLimit> list;
     for (std::size_t c = 0; c < static_cast<std::size_t>(data.effects); ++c) {
         const Candidate& candidate = data.candidates[c];
+        const GapSpace &space = whole.lacking(candidate.lacking),
+                       &fixed = whole_fixed.lacking(candidate.lacking);
         DetectionLimit limit;
         limit.effect = data.name(c);
         limit.unit = evidence.candidates[c].unit;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace mcdem::inline diagnose {
@@ -101,7 +102,18 @@ private:
 
 }  // namespace
 
-double draw_error(const GapSpace& space, const Candidate& candidate, double amplitude) {
+CellChoice lacking_cells(const std::vector<Candidate>& candidates) {
+    CellChoice all;
+    for (const Candidate& candidate : candidates) {
+        CellChoice both;
+        std::ranges::set_union(all, candidate.lacking, std::back_inserter(both));
+        all = std::move(both);
+    }
+    return all;
+}
+
+double draw_error(const GapSpace& whole, const Candidate& candidate, double amplitude) {
+    const GapSpace& space = whole.lacking(candidate.lacking);
     const Signature& signature = *candidate.signature;
     const int pairs = signature.pairs();
     const Eigen::VectorXd slope = space.whiten(signature.slope(amplitude));
@@ -117,7 +129,7 @@ double draw_error(const GapSpace& space, const Candidate& candidate, double ampl
 
 JointFit fit_effects(const GapSpace& space, const std::vector<Candidate>& candidates,
                      const Eigen::VectorXd& gap) {
-    const Misfit misfit(space, candidates, gap);
+    const Misfit misfit(space.lacking(lacking_cells(candidates)), candidates, gap);
     const Eigen::VectorXd amplitudes = misfit.best_amplitudes();
     const Eigen::MatrixXd information = misfit.information(amplitudes);
     const Eigen::FullPivLU<Eigen::MatrixXd> solver(information);

@@ -8,7 +8,12 @@ namespace mcdem::inline diagnose {
 struct Candidate {
     const Signature* signature = nullptr;
     double low = 0, high = 0;
+    /// Cells without a value of the signature, which is zero there. The candidate is fitted on the others,
+    /// so these cells gain nothing, and their gap counts as unexplained by it.
+    CellChoice lacking = {};
 };
+/// Cells that one of the candidates lacks.
+CellChoice lacking_cells(const std::vector<Candidate>& candidates);
 
 struct EffectFit {
     double amplitude = 0;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <stdexcept>
 
 #include "core/errors.h"
@@ -45,14 +47,30 @@ std::vector<int> folds_of(const std::vector<int>& packing) {
     return fold;
 }
 
-/// Fraction of the known cells that a signature must have. Otherwise its runs failed, and using it would
-/// exclude the missing cells.
+/// Fraction of the known cells that a signature must have. Otherwise it can explain no more than a part of
+/// the gap, and a parameter would exclude most cells.
 constexpr double enough_cells = 0.5;
 constexpr std::size_t min_replicates = 8, min_own_replicates = 4;
 
 std::string cause_of(const FailureCauses& causes, const std::string& name, const std::string& otherwise) {
     const auto cause = causes.find(name);
     return cause == causes.end() ? otherwise : cause->second;
+}
+
+void keep_rows(Library& library, const std::vector<Eigen::Index>& kept) {
+    library.baseline = Eigen::MatrixXd(library.baseline(kept, Eigen::all));
+    std::vector<int> packing;
+    for (const auto r : kept) packing.push_back(library.packing[r]);
+    library.packing = packing;
+}
+
+/// Whether these rows contain two replicates of each packing that has two.
+bool keeps_packings(const std::vector<int>& packing, const std::vector<Eigen::Index>& rows) {
+    std::map<int, int> left;
+    for (const auto row : rows) ++left[packing[row]];
+    return std::ranges::all_of(packing, [&](int p) {
+        return left[p] >= std::min<std::ptrdiff_t>(2, std::ranges::count(packing, p));
+    });
 }
 
 void leave_out_replicates(Evidence& evidence, const FailureCauses& causes, std::vector<std::string>& notes) {
@@ -72,11 +90,37 @@ void leave_out_replicates(Evidence& evidence, const FailureCauses& causes, std::
                      "the packing runs away, or the scene cannot follow the experiment's plate")));
     notes.push_back("replicates: " + what + " and are left out" +
                     (causes.contains("") ? ": " + causes.at("") : ""));
-    library.baseline = Eigen::MatrixXd(library.baseline(kept, Eigen::all));
-    std::vector<int> packing;
-    for (const auto r : kept) packing.push_back(library.packing[r]);
-    library.packing = packing;
+    keep_rows(library, kept);
     evidence.baseline = Eigen::MatrixXd(evidence.baseline(own, Eigen::all));
+}
+
+/// Leaves out of the noise those replicates that lack the most cells, if more values remain without them:
+/// a cell is compared only if every replicate has it. Packings keep two replicates.
+void leave_out_incomplete(Evidence& evidence, std::vector<std::string>& notes) {
+    Library& library = evidence.library;
+    const Eigen::Index all = library.baseline.rows();
+    const auto values = [](const Eigen::MatrixXd& rows) {
+        return rows.rows() * rows.array().isFinite().colwise().all().count();
+    };
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(all)), kept;
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    const Eigen::ArrayXi has = library.baseline.array().isFinite().rowwise().count().cast<int>();
+    std::ranges::stable_sort(order, std::greater(), [&](Eigen::Index row) { return has[row]; });
+    Eigen::Index most = values(library.baseline);
+    for (std::size_t n = order.size() - 1; n >= min_replicates; --n) {
+        std::vector<Eigen::Index> fullest(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
+        const Eigen::Index left = values(library.baseline(fullest, Eigen::all));
+        if (left <= most || !keeps_packings(library.packing, fullest)) continue;
+        most = left;
+        kept = std::move(fullest);
+    }
+    if (kept.empty()) return;
+    std::ranges::sort(kept);
+    notes.push_back(
+        fmt::format("replicates: {} of {} runs of the scene as it stands lack values that the "
+                    "others have, and are left out of the noise",
+                    all - static_cast<Eigen::Index>(kept.size()), all));
+    keep_rows(library, kept);
 }
 
 /// Removes entries of `wanted` whose signature lacks most of the cells that all others have.
@@ -91,8 +135,12 @@ void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>
         const Signature& s = find(signatures, w.name);
         const auto has = (known && s.linear.array().isFinite() && s.curvature.array().isFinite()).count();
         if (static_cast<double>(has) >= enough_cells * static_cast<double>(known.count())) return false;
-        notes.push_back(fmt::format("{}: its runs failed ({}), so it cannot be tested", w.name,
-                                    cause_of(causes, w.name, "the packing runs away with it")));
+        notes.push_back(
+            has > 0 && !causes.contains(w.name)
+                ? fmt::format("{}: with it only {} of {} bins have a value, so it cannot be tested", w.name,
+                              has, known.count())
+                : fmt::format("{}: its runs failed ({}), so it cannot be tested", w.name,
+                              cause_of(causes, w.name, "the packing runs away with it")));
         return true;
     });
 }
@@ -146,6 +194,7 @@ void take_means(Evidence& evidence) {
 std::vector<std::string> leave_out_failures(Evidence& evidence, const FailureCauses& causes) {
     std::vector<std::string> notes;
     leave_out_replicates(evidence, causes, notes);
+    leave_out_incomplete(evidence, notes);
     leave_out_signatures(evidence, evidence.library.effects, causes, evidence.candidates, notes);
     leave_out_signatures(evidence, evidence.library.nuisances, causes, evidence.nuisances, notes);
     return notes;
@@ -159,6 +208,83 @@ Eigen::VectorXd GapData::in_range(Eigen::VectorXd nuisances) const {
     return nuisances;
 }
 
+CellChoice GapData::lacking(const std::vector<std::size_t>& chosen) const {
+    std::vector<Candidate> some;
+    for (const auto c : chosen) some.push_back(candidates[c]);
+    return lacking_cells(some);
+}
+
+namespace {
+
+/// Zero in cells without a value.
+Signature completed(Signature s, const CellChoice& lacking) {
+    for (const auto cell : lacking) {
+        s.linear[cell] = s.curvature[cell] = 0;
+        if (s.pairs() > 0) s.slopes.col(cell).setZero();
+    }
+    return s;
+}
+
+void add_effects(GapData& s, const Evidence& evidence) {
+    for (const CandidateRange& range : evidence.candidates) {
+        const Signature* signature = &find(evidence.library.effects, range.name);
+        CellChoice lacking = lacking_cells(*signature);
+        if (!lacking.empty())
+            signature =
+                s.completed.emplace_back(std::make_shared<Signature>(completed(*signature, lacking))).get();
+        s.candidates.push_back({signature, range.low, range.high, std::move(lacking)});
+    }
+    s.effects = static_cast<int>(s.candidates.size());
+}
+
+CellChoice cells_where(const Eigen::Array<bool, Eigen::Dynamic, 1>& is) {
+    CellChoice cells;
+    for (Eigen::Index cell = 0; cell < is.size(); ++cell)
+        if (is[cell]) cells.push_back(cell);
+    return cells;
+}
+
+/// What lacks cells that the experiment and most of the replicates have.
+std::vector<MissingBins> missing_bins(const Evidence& evidence, const GapData& data) {
+    const Eigen::MatrixXd& baseline = evidence.library.baseline;
+    Eigen::Array<bool, Eigen::Dynamic, 1> measured = evidence.observed.array().isFinite();
+    for (const PackingEvidence& packing : evidence.packings)
+        measured = measured || packing.observed.array().isFinite();
+    const CellChoice possible = cells_where(
+        measured &&
+        2 * baseline.array().isFinite().cast<Eigen::Index>().colwise().sum().transpose() > baseline.rows());
+    std::vector<MissingBins> missing;
+    const auto add = [&](const std::string& name, const CellChoice& all, const CellChoice& rest) {
+        const auto lost = all.size() - rest.size();
+        if (lost > 0)
+            missing.push_back(
+                {name, static_cast<int>(lost), static_cast<int>(all.size()), &all == &possible});
+    };
+    add("", possible,
+        without(possible, cells_where(!baseline.array().isFinite().colwise().all().transpose())));
+    for (const PackingEvidence& packing : evidence.packings)
+        add(packing.name, possible, without(possible, cells_where(!packing.observed.array().isFinite())));
+    for (const NuisancePrior& prior : evidence.nuisances)
+        add(prior.name, possible,
+            without(possible, lacking_cells(find(evidence.library.nuisances, prior.name))));
+    for (std::size_t c = 0; c < static_cast<std::size_t>(data.effects); ++c)
+        add(data.name(c), data.cells, without(data.cells, data.candidates[c].lacking));
+    return missing;
+}
+
+}  // namespace
+
+bool GapData::at_end_of_range(double nuisance, double sigma) {
+    return std::abs(nuisance) >= (1 - 1e-9) * farthest * sigma;
+}
+
+std::vector<const Signature*> parameters_of(const Evidence& evidence) {
+    std::vector<const Signature*> signatures;
+    for (const NuisancePrior& prior : evidence.nuisances)
+        signatures.push_back(&find(evidence.library.nuisances, prior.name));
+    return signatures;
+}
+
 GapData gap_data(const Evidence& evidence) {
     GapData s;
     s.mean = column_means(evidence.baseline);
@@ -169,14 +295,9 @@ GapData gap_data(const Evidence& evidence) {
     s.fold = folds_of(evidence.library.packing);
     for (const NuisancePrior& prior : evidence.nuisances)
         s.free.push_back({find(evidence.library.nuisances, prior.name).linear, prior.sigma});
-    for (const CandidateRange& range : evidence.candidates)
-        s.candidates.push_back({&find(evidence.library.effects, range.name), range.low, range.high});
-    s.effects = static_cast<int>(s.candidates.size());
-    std::vector<const Signature*> used;
-    for (const Candidate& effect : s.candidates) used.push_back(effect.signature);
-    for (const NuisancePrior& prior : evidence.nuisances)
-        used.push_back(&find(evidence.library.nuisances, prior.name));
-    s.cells = usable_cells(evidence.library.baseline, used, s.gap);
+    add_effects(s, evidence);
+    s.cells = usable_cells(evidence.library.baseline, parameters_of(evidence), s.gap);
+    s.missing = missing_bins(evidence, s);
     if (has_other_packings(evidence)) add_own_scatter(s, evidence.baseline);
     for (const NuisancePrior& prior : evidence.nuisances)
         if (prior.name == "modulus" || prior.name == "strain_offset" || prior.name == "gamma")

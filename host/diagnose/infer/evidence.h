@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "diagnose/decide/diagnosis.h"
 #include "diagnose/infer/effect_fit.h"
 #include "diagnose/infer/gap_space.h"
 
@@ -56,8 +58,9 @@ Eigen::MatrixXd mean_over_packings(const Eigen::MatrixXd& rows, int packings);
 using FailureCauses = std::map<std::string, std::string>;
 
 /// Leaves out the results of failed simulations: replicates without any value, candidates and nuisances
-/// without a signature in most of the otherwise known cells. Returns what was left out and why. Throws
-/// InputError if too few replicates remain.
+/// without a signature in most of the otherwise known cells. Replicates without values in some cells are left
+/// out of the noise if more values remain so. Returns what was left out and why. Throws InputError if too few
+/// replicates remain.
 std::vector<std::string> leave_out_failures(Evidence& evidence, const FailureCauses& causes = {});
 
 /// Group of the replicates of the experiment's own packing if the library is made on other packings.
@@ -75,11 +78,20 @@ struct GapData {
     std::vector<Candidate> candidates;  ///< effects, then nuisances beyond their priors
     int effects = 0;                    ///< number of effects among them
     int packings = 1;                   ///< number of packings in the gap
+    std::vector<MissingBins> missing;   ///< what lacks cells that the experiment has
+    /// Copies of signatures that lack cells, with zeros there.
+    std::vector<std::shared_ptr<const Signature>> completed;
+    /// Cells that one of these candidates lacks.
+    CellChoice lacking(const std::vector<std::size_t>& chosen) const;
     const std::string& name(std::size_t candidate) const { return candidates[candidate].signature->name; }
     /// The nuisances, each limited to the range in which simulations are made. A fit far from the data may
     /// leave it, and a modulus is an exponential of its nuisance.
     Eigen::VectorXd in_range(Eigen::VectorXd nuisances) const;
+    static bool at_end_of_range(double nuisance, double sigma);
 };
+
+/// The signatures of the evidence's nuisances.
+std::vector<const Signature*> parameters_of(const Evidence& evidence);
 
 /// Holds references to `evidence`, which must outlive it.
 GapData gap_data(const Evidence& evidence);

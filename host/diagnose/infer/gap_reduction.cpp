@@ -28,11 +28,12 @@ public:
     }
 
     PartialFit fit(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates) const {
-        const std::vector<double> amplitudes = fit_effects(space_, candidates, gap).amplitudes;
+        const GapSpace& space = space_.lacking(lacking_cells(candidates));
+        const std::vector<double> amplitudes = fit_effects(space, candidates, gap).amplitudes;
         Eigen::VectorXd left = gap;
         for (std::size_t k = 0; k < candidates.size(); ++k)
             left -= candidates[k].signature->at(amplitudes[k]);
-        return {amplitudes, space_.fit_nuisances(left)};
+        return {amplitudes, space.fit_nuisances(left)};
     }
 
     Eigen::VectorXd explained(const PartialFit& fit, const std::vector<Candidate>& candidates) const {
@@ -47,9 +48,11 @@ public:
     /// Size of the gap on the held-out cells without and with the candidates.
     std::array<double, 2> sizes(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates,
                                 int extra = 0) const {
-        return {
-            gap_size(data_, held_out_, refitted(gap), mean_of_, extra),
-            gap_size(data_, held_out_, gap - explained(fit(gap, candidates), candidates), mean_of_, extra)};
+        const Eigen::VectorXd before = refitted(gap);
+        Eigen::VectorXd after = gap - explained(fit(gap, candidates), candidates);
+        for (const auto cell : lacking_cells(candidates)) after[cell] = before[cell];
+        return {gap_size(data_, held_out_, before, mean_of_, extra),
+                gap_size(data_, held_out_, after, mean_of_, extra)};
     }
 
 private:
@@ -148,7 +151,8 @@ PartialFit refit_part(const GapData& data, const CellChoice& cells, const Eigen:
         const Candidate& candidate = data.candidates[candidates[k]];
         free.push_back({candidate.signature->slope(at.amplitudes[k]), candidate.high - candidate.low});
     }
-    const Eigen::VectorXd step = GapSpace(data.noise, mean_of, cells, free).fit_nuisances(without_nuisances);
+    const GapSpace space(data.noise, mean_of, without(cells, data.lacking(candidates)), free);
+    const Eigen::VectorXd step = space.fit_nuisances(without_nuisances);
     return stepped(data, candidates, {at.amplitudes, Eigen::VectorXd::Zero(at.nuisances.size())}, step);
 }
 
@@ -172,11 +176,14 @@ double held_out_reduction(const GapData& data, const Split& split, const std::ve
 
 std::optional<double> reduction_by_runs(const GapData& data, const Split& split,
                                         const Eigen::VectorXd& observed, const Eigen::MatrixXd& all_runs,
-                                        int mean_of) {
-    const Eigen::MatrixXd runs = whole_runs(all_runs, split.held_out);
+                                        int mean_of, const CellChoice& lacking) {
+    const Eigen::MatrixXd runs = whole_runs(all_runs, without(split.held_out, lacking));
     const double before = held_out_gap(data, split, mean_of).size;
     if (runs.rows() == 0 || !(before > 0)) return std::nullopt;
-    const Eigen::VectorXd left = observed - runs.colwise().mean().transpose();
+    Eigen::VectorXd left = observed - runs.colwise().mean().transpose();
+    const Eigen::VectorXd unexplained = Arms(data, split, mean_of).refitted(data.gap);
+    for (const auto cell : lacking)
+        if (!std::isfinite(left[cell])) left[cell] = unexplained[cell];
     const double after = gap_size(data, split.held_out, left, static_cast<int>(runs.rows()));
     return std::clamp(1 - after / before, -1.0, 1.0);
 }

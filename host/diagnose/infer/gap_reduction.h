@@ -29,12 +29,14 @@ struct HeldOutGap {
 HeldOutGap held_out_gap(const GapData& data, const Split& split, int mean_of);
 
 /// Fraction of the held-out gap taken away by the given candidates (one or two), fitted on the other cells.
+/// Nothing of it is taken away in cells that a candidate lacks.
 double held_out_reduction(const GapData& data, const Split& split, const std::vector<std::size_t>& candidates,
                           int mean_of);
-/// The same for runs with the amplitudes fitted there; row: replicate. Empty if they failed.
+/// The same for runs with the amplitudes fitted there; row: replicate. Empty if they failed. The gap stays as
+/// it was in those `lacking` cells of the candidates in which some run has no value.
 std::optional<double> reduction_by_runs(const GapData& data, const Split& split,
                                         const Eigen::VectorXd& observed, const Eigen::MatrixXd& runs,
-                                        int mean_of);
+                                        int mean_of, const CellChoice& lacking = {});
 /// The same for the best of twenty random signatures.
 double held_out_placebo(const GapData& data, const Split& split, int mean_of, std::uint64_t seed);
 /// The same for the whole gap by likelihood: gain over `excess`, the gain if the whole gap were explained.

@@ -3,6 +3,8 @@
 #pragma once
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <map>
+#include <memory>
 #include <vector>
 
 #include "diagnose/infer/library.h"
@@ -13,13 +15,18 @@ namespace mcdem::inline diagnose {
 /// correlations).
 Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& rows);
 
-/// Cells with finite values in every replicate and every used signature, and with nonzero variance.
-std::vector<Eigen::Index> usable_cells(const Eigen::MatrixXd& baseline,
-                                       const std::vector<const Signature*>& used,
-                                       const Eigen::VectorXd& observed);
-
-/// Subset of the cells, for ablations and the split into fitted and held-out cells.
+/// Subset of the cells in ascending order, for ablations and the split into fitted and held-out cells.
 using CellChoice = std::vector<Eigen::Index>;
+
+/// Cells with finite values in every replicate and in the signature of every uncertain parameter, and with
+/// nonzero variance. A parameter whose change of a cell is unknown may shift it by any amount.
+CellChoice usable_cells(const Eigen::MatrixXd& baseline, const std::vector<const Signature*>& parameters,
+                        const Eigen::VectorXd& observed);
+
+/// Cells in which a signature has no value.
+CellChoice lacking_cells(const Signature& signature);
+/// `cells` that are not among `others`.
+CellChoice without(const CellChoice& cells, const CellChoice& others);
 
 /// Rows of `all` in the order of `cells`.
 Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells);
@@ -42,6 +49,9 @@ public:
              const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra = {});
 
     const CellChoice& cells() const { return cells_; }
+    /// The same on its cells that are not among `lacking`: nothing is assumed about the others. Refers to
+    /// this space or a part of it that lives as long.
+    const GapSpace& lacking(const CellChoice& lacking) const;
     /// Whitens a vector on all cells; its square is a chi-square of the gap with nuisances marginalised.
     Eigen::VectorXd whiten(const Eigen::VectorXd& all) const;
     /// Marginal log likelihood of a difference on all cells, up to a constant that depends on the number of
@@ -58,11 +68,19 @@ public:
     double sigma_of(const Eigen::VectorXd& weights) const;
 
 private:
+    /// The part of `whole` at these places of its cells.
+    GapSpace(const GapSpace& whole, const std::vector<Eigen::Index>& places);
+    /// From cells, covariance, directions and priors.
+    void factorise();
+
     CellChoice cells_;
     Eigen::ArrayXd sigma_;
+    Eigen::MatrixXd covariance_;  // without nuisances
     Eigen::LLT<Eigen::MatrixXd> noise_, total_;
     Eigen::MatrixXd directions_;  // column: nuisance, on the chosen cells
+    Eigen::VectorXd priors_;      // one sigma of each nuisance
     Eigen::MatrixXd posterior_;   // covariance of the nuisances
+    mutable std::map<CellChoice, std::shared_ptr<const GapSpace>> parts_;  // by its cells
 };
 
 }  // namespace mcdem::diagnose

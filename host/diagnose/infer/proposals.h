@@ -14,7 +14,8 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
 /// and its misfit; if this is below `enough`, but not without one of the `places`, that one is left out. The
 /// amplitude may still move with a prior of twice its error plus a quarter of its size, and the nuisances
 /// within their priors; these steps are returned (nuisances, then amplitudes). Returns nothing if fewer than
-/// two runs finished. `runs`: one row per replicate.
+/// two runs finished. In cells that a candidate lacks and the runs as well, nothing is gained and the gap
+/// stays. `runs`: one row per replicate.
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
                                        const std::vector<PlaceLeftOut>& places, double enough,
                                        const Eigen::VectorXd& observed, const Eigen::VectorXd& nuisances,

@@ -60,6 +60,16 @@ Signature straight_signature(const std::string& name, double amplitude, const Ei
     return s;
 }
 
+/// Takes the cells in which `s` has no value from `other`, which has the same pairs.
+void fill_in(Signature& s, const Signature& other) {
+    for (Eigen::Index cell = 0; cell < s.linear.size(); ++cell) {
+        if (std::isfinite(s.linear[cell]) && std::isfinite(s.curvature[cell])) continue;
+        s.linear[cell] = other.linear[cell];
+        s.curvature[cell] = other.curvature[cell];
+        s.slopes.col(cell) = other.slopes.col(cell);
+    }
+}
+
 Signature parabola_signature(const std::string& name, double first, double second,
                              const Eigen::MatrixXd& at_first, const Eigen::MatrixXd& at_second) {
     // The parabola through zero and both differences, for each pair.
@@ -102,9 +112,13 @@ Signature learn_signature(const std::string& name, double first, double second,
     const auto holds_first = rows_with_numbers(at_first), holds_second = rows_with_numbers(at_second);
     std::vector<Eigen::Index> both;
     std::ranges::set_intersection(holds_first, holds_second, std::back_inserter(both));
-    if (both.size() >= needed)
-        return parabola_signature(name, first, second, at_first(both, Eigen::all),
-                                  at_second(both, Eigen::all));
+    if (both.size() >= needed) {
+        Signature s =
+            parabola_signature(name, first, second, at_first(both, Eigen::all), at_second(both, Eigen::all));
+        fill_in(s, straight_signature(name, second, at_second(both, Eigen::all)));
+        fill_in(s, straight_signature(name, first, at_first(both, Eigen::all)));
+        return s;
+    }
     if (holds_second.size() >= needed)
         return straight_signature(name, second, at_second(holds_second, Eigen::all));
     if (holds_first.size() >= needed)

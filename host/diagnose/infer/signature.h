@@ -33,6 +33,8 @@ Signature continued_from(const Signature& signature, double done);
 /// zero according to the scatter over pairs (positive-part James & Stein 1961, cell by cell), the curvature
 /// first. Pairs with a failed run (all NaN) are left out. With fewer than two complete pairs, it is a
 /// straight line through the results at the amplitude at which runs succeed; NaN if they succeed at neither.
+/// The same holds for a single cell without a value in some pair: a force whose logarithm is observed may
+/// vanish with a large effect only.
 Signature learn_signature(const std::string& name, double first, double second,
                           const Eigen::MatrixXd& at_first, const Eigen::MatrixXd& at_second);
 

@@ -96,6 +96,7 @@ public:
             diagnosis.next.insert(diagnosis.next.begin(), simulate_motion(model().replica, *left));
         if (auto first = change_of_the_scene(diagnosis, model(), plan_.nuisances))
             diagnosis.next.insert(diagnosis.next.begin(), *first);
+        if (auto check = check_of(diagnosis)) diagnosis.next.insert(diagnosis.next.begin(), *check);
         if (diagnosis.gap_reduction && paper_metrics() && options_.confirmations > 0)
             add_paper_metrics(*diagnosis.gap_reduction, experiments_.front().recording,
                               before_after(*builder));

@@ -209,6 +209,14 @@ void describe(Members& io, NuisanceFit& fit) {
     io("at_bound", fit.at_bound);
 }
 
+void describe(Members& io, MissingBins& missing) {
+    io("of", missing.of);
+    io("bins", missing.count);
+    io("of_bins", missing.all);
+    io.derived("share", missing.share());
+    io("for_all", missing.for_all);
+}
+
 /// Members that are in an object of their own.
 struct Gap {
     Diagnosis& of;
@@ -248,6 +256,8 @@ void describe(Members& io, Diagnosis& diagnosis) {
     io("cells", diagnosis.cells);
     io("ranking", diagnosis.ranking);
     io("nuisances", diagnosis.nuisances);
+    io.later("check_first", diagnosis.check_first);
+    io.later("missing_bins", diagnosis.missing_bins);
     io("not_testable", diagnosis.not_testable);
     io.later("refinements", diagnosis.refinements);
     io.later("next", diagnosis.next);

@@ -121,11 +121,30 @@ TextTable table_of_nuisances(const Diagnosis& diagnosis) {
                      {"uncertainty"},
                      {"shift / uncertainty"},
                      {"remark", Align::left}};
+    for (const auto& fit : diagnosis.check_first)
+        table.rows.push_back({words_of(fit.name), amount(fit.value, fit.error, fit.unit, Sign::always),
+                              "± " + amount(fit.prior, fit.unit), number(fit.sigmas(), "{:+.1f}"),
+                              diagnosis.causes.empty() ? "to be checked first"
+                                                       : "to be checked first: with the effects above"});
     for (const auto& fit : diagnosis.nuisances)
         table.rows.push_back({words_of(fit.name), amount(fit.value, fit.error, fit.unit, Sign::always),
                               "± " + amount(fit.prior, fit.unit),
                               fit.prior > 0 ? number(fit.value / fit.prior, "{:+.1f}") : no_number,
-                              fit.at_bound ? "more than 2.5 times its uncertainty" : ""});
+                              fit.at_bound ? "more than 2.5 times its uncertainty, without an effect" : ""});
+    table.notes = {"shifts are fitted without any effect unless the remark says otherwise"};
+    return table;
+}
+
+/// What lacks values that the experiment has.
+TextTable table_of_missing_bins(const Diagnosis& diagnosis) {
+    TextTable table;
+    table.columns = {
+        {"what", Align::left}, {"bins without a value"}, {"of"}, {"part"}, {"consequence", Align::left}};
+    for (const auto& missing : diagnosis.missing_bins)
+        table.rows.push_back(
+            {missing.of.empty() ? "some runs of the scene as it stands" : words_of(missing.of),
+             std::to_string(missing.count), std::to_string(missing.all), percent(missing.share()),
+             missing.for_all ? "nothing is compared there" : "their gap counts as not explained by it"});
     return table;
 }
 
@@ -282,13 +301,16 @@ void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& na
                table_of_causes(diagnosis));
     page.table("What these data can show", table_of_detection_limits(diagnosis));
     page.section("How far");
-    if (!diagnosis.gap_reduction) page.paragraph(verdict_lines(diagnosis)[3].says);
+    if (!diagnosis.gap_reduction)
+        for (const auto& [about, says] : verdict_lines(diagnosis))
+            if (about == "How far") page.paragraph(says);
     add_charts(page, charts, {"how_far", "gap_left"});
     page.table("Before and after", table_of_gap_reduction(diagnosis));
     std::vector<std::string> steps;
     for (const auto& step : diagnosis.next) steps.push_back(next_words(step));
     add_list(page, "What to do next", steps);
     add_table(page, "Uncertain parameters", table_of_nuisances(diagnosis));
+    add_table(page, "Bins without a value", table_of_missing_bins(diagnosis));
     add_list(page, "What was not measured", diagnosis.not_measured);
     add_list(page, "What cannot be tested", diagnosis.not_testable);
     add_table(page, "What the effects are", table_of_effects(diagnosis));

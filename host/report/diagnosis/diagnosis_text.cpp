@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/diagnosis/diagnosis_values.h"
+#include "report/diagnosis/diagnosis_where.h"
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/page/labels.h"
 
 namespace mcdem::inline report {
 namespace {
 
-constexpr std::size_t max_places = 2;  // of "where"
 constexpr std::size_t max_limits = 5;
 constexpr std::size_t max_remark_length = 160;
 
@@ -102,63 +101,6 @@ std::string gap_line(const Diagnosis& diagnosis) {
         refined(diagnosis), p_words(diagnosis.p_value), packings);
 }
 
-/// The strongest of the framed cells in the figure, and their number.
-struct Framed {
-    const WhereCell* strongest = nullptr;
-    int count = 0;
-};
-Framed framed_cells(const Diagnosis& diagnosis, bool refitted) {
-    const auto size = [&](const WhereCell& cell) {
-        return std::fabs(refitted ? cell.z_score_refitted : cell.z_score);
-    };
-    Framed framed;
-    for (const auto& cell : diagnosis.cells) {
-        if (!std::isfinite(size(cell)) || !stands_out(diagnosis, cell, refitted)) continue;
-        ++framed.count;
-        if (!framed.strongest || size(cell) > size(*framed.strongest)) framed.strongest = &cell;
-    }
-    return framed;
-}
-
-/// Without entries: single cells beyond the threshold, so that the text agrees with the figure.
-std::string framed_line(const Diagnosis& diagnosis) {
-    const Framed refitted = framed_cells(diagnosis, true), stated = framed_cells(diagnosis, false);
-    if (refitted.count + stated.count == 0) return "no single value stands out from the noise.";
-    const bool after = refitted.count > 0;
-    const Framed& shown = after ? refitted : stated;
-    auto text =
-        fmt::format("{} of {} values {} beyond {:.1f} sigma {} (largest: {}, {:.1f} sigma)", shown.count,
-                    diagnosis.cells.size(), shown.count == 1 ? "is" : "are", diagnosis.where_threshold,
-                    after ? "after recalibration" : "with the parameters as stated",
-                    words_of(shown.strongest->observable),
-                    after ? shown.strongest->z_score_refitted : shown.strongest->z_score);
-    if (!after)
-        text += ", and none after recalibration";
-    else if (!diagnosis.detected)
-        text += "; with this many values, chance alone can give that";
-    return text + ".";
-}
-
-/// The strongest entry of each observable first.
-std::string where_line(const Diagnosis& diagnosis) {
-    if (diagnosis.where.empty()) return framed_line(diagnosis);
-    auto entries = diagnosis.where;
-    std::ranges::stable_sort(entries, [](const WhereEntry& a, const WhereEntry& b) {
-        return std::fabs(a.z_score) > std::fabs(b.z_score);
-    });
-    std::vector<std::string> parts, observables;
-    for (const auto& entry : entries) {
-        if (std::ranges::find(observables, entry.observable) != observables.end()) continue;
-        observables.push_back(entry.observable);
-        if (parts.size() < max_places) parts.push_back(where_words(entry));
-    }
-    auto text = fmt::format("{}", fmt::join(parts, "; "));
-    if (observables.size() > parts.size())
-        text += fmt::format("; and {} more observable{}", observables.size() - parts.size(),
-                            observables.size() - parts.size() == 1 ? "" : "s");
-    return text + ".";
-}
-
 /// The reduction required to name an effect, as a continuation.
 std::string needed_words(const Explanation& explanation) {
     if (explanation.reduction < 0) return "";
@@ -245,6 +187,7 @@ std::string how_far_line(const Diagnosis& diagnosis) {
                             what_is_added(diagnosis), reduction_words(diagnosis), data_words(diagnosis),
                             explanation.simulated ? "from full simulations" : "estimated from signatures",
                             percent(explanation.placebo), remainder_words(explanation));
+    if (!diagnosis.check_first.empty()) text += ", with the shifts of parameters under First";
     if (const auto& gap_reduction = diagnosis.gap_reduction;
         gap_reduction && gap_reduction->before > 0 && explanation.held_out)
         text += fmt::format("; the signatures had predicted {} (90 % interval: {:.0f} to {})",
@@ -303,6 +246,7 @@ std::string limits_line(const Diagnosis& diagnosis) {
         text += "; a difference between packings is not an effect that acts on all of them";
     const auto never = never_shown(diagnosis);
     if (!never.empty()) text += "; these data can never show " + listed(never, max_limits);
+    if (const auto missing = missing_words(diagnosis.missing_bins); !missing.empty()) text += "; " + missing;
     if (!diagnosis.not_measured.empty())
         text += "; not measured: " + shortened(one_line(diagnosis.not_measured.front()), max_remark_length);
     while (text.ends_with('.')) text.pop_back();
@@ -326,9 +270,7 @@ std::string taken_away(const Diagnosis& diagnosis) {
                        percent(diagnosis.explanation->reduction));
 }
 
-}  // namespace
-
-std::string verdict_headline(const Diagnosis& diagnosis) {
+std::string headline_of_verdict(const Diagnosis& diagnosis) {
     const bool pair = !together_with(diagnosis).empty();
     switch (diagnosis.verdict) {
         case Verdict::no_gap:
@@ -349,7 +291,7 @@ std::string verdict_headline(const Diagnosis& diagnosis) {
     return "A stated parameter is suspect";
 }
 
-std::string verdict_sentence(const Diagnosis& diagnosis) {
+std::string sentence_of_verdict(const Diagnosis& diagnosis) {
     const auto* leader = leader_of(diagnosis);
     switch (diagnosis.verdict) {
         case Verdict::no_gap:
@@ -379,13 +321,34 @@ std::string verdict_sentence(const Diagnosis& diagnosis) {
            (suspects.empty() ? "" : ": " + suspects) + ".";
 }
 
-std::array<VerdictLine, 6> verdict_lines(const Diagnosis& diagnosis) {
-    return {{{"Gap", gap_line(diagnosis)},
-             {"Where", where_line(diagnosis)},
-             {"Which", which_line(diagnosis)},
-             {"How far", how_far_line(diagnosis)},
-             {"Limits", limits_line(diagnosis)},
-             {"Next", next_line(diagnosis)}}};
+}  // namespace
+
+std::string verdict_headline(const Diagnosis& diagnosis) {
+    const auto headline = headline_of_verdict(diagnosis);
+    if (diagnosis.check_first.empty()) return headline;
+    const auto& farthest = diagnosis.check_first.front();
+    const auto others = diagnosis.check_first.size() - 1;
+    return fmt::format("Check first: {} ({}){}. {}", words_of(farthest.name), sigma_words(farthest),
+                       others == 0 ? "" : fmt::format(" and {} more", others), headline);
+}
+
+std::string verdict_sentence(const Diagnosis& diagnosis) {
+    auto check = check_words(diagnosis);
+    if (check.empty()) return sentence_of_verdict(diagnosis);
+    check[0] = 'C';
+    return check + ". " + sentence_of_verdict(diagnosis);
+}
+
+std::vector<VerdictLine> verdict_lines(const Diagnosis& diagnosis) {
+    std::vector<VerdictLine> lines;
+    if (!diagnosis.check_first.empty()) lines.push_back({"First", check_words(diagnosis) + "."});
+    lines.push_back({"Gap", gap_line(diagnosis)});
+    lines.push_back({"Where", where_line(diagnosis)});
+    lines.push_back({"Which", which_line(diagnosis)});
+    lines.push_back({"How far", how_far_line(diagnosis)});
+    lines.push_back({"Limits", limits_line(diagnosis)});
+    lines.push_back({"Next", next_line(diagnosis)});
+    return lines;
 }
 
 std::string diagnosis_text(const Diagnosis& diagnosis) {

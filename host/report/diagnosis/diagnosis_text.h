@@ -1,6 +1,6 @@
 #pragma once
-#include <array>
 #include <string>
+#include <vector>
 
 #include "diagnose/decide/diagnosis.h"
 
@@ -10,14 +10,15 @@ std::string verdict_headline(const Diagnosis& diagnosis);
 std::string verdict_sentence(const Diagnosis& diagnosis);
 
 struct VerdictLine {
-    std::string about;  ///< Gap, Where, Which, How far, Limits, Next
+    std::string about;  ///< First, Gap, Where, Which, How far, Limits, Next
     std::string says;
 };
 
-/// Existence and location of the gap, consistent effects, gap reduction, limits, and next steps.
-std::array<VerdictLine, 6> verdict_lines(const Diagnosis& diagnosis);
+/// Parameters to check before anything else, if there are any; existence and location of the gap, consistent
+/// effects, gap reduction, limits, and next steps.
+std::vector<VerdictLine> verdict_lines(const Diagnosis& diagnosis);
 
-/// The six lines, aligned, each with a line feed.
+/// These lines, aligned, each with a line feed.
 std::string diagnosis_text(const Diagnosis& diagnosis);
 
 }  // namespace mcdem::report

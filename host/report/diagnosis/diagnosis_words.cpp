@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "diagnose/infer/effects.h"
 #include "report/page/labels.h"
@@ -241,6 +242,57 @@ std::string suspect_words(const NuisanceFit& suspect) {
     auto text = words_of(suspect.name) + ": " +
                 directed_amount(suspect.name, suspect.value, suspect.error, suspect.unit);
     if (suspect.prior > 0) text += fmt::format(" ({:.1f} times its stated error)", pull(suspect));
+    return text;
+}
+
+std::string sigma_words(const NuisanceFit& fit) {
+    return fmt::format("{}{:.2g} sigma", fit.at_bound ? "at least " : "", pull(fit));
+}
+
+std::string check_words(const Diagnosis& diagnosis) {
+    std::vector<std::string> words;
+    for (const auto& fit : diagnosis.check_first)
+        words.push_back(fmt::format("{} must be {} to fit ({})", words_of(fit.name),
+                                    directed_amount(fit.name, fit.value, fit.error, fit.unit),
+                                    sigma_words(fit)));
+    if (words.empty()) return "";
+    return fmt::format("check what is stated: {}; all that follows assumes {}", listed(words),
+                       words.size() == 1 ? "this shift" : "these shifts");
+}
+
+namespace {
+
+/// "adhesion and friction have no value in 4 of 8 bins (50 %)", with all that lack as many.
+std::vector<std::string> lacking_words(const std::vector<MissingBins>& missing) {
+    std::vector<std::string> words;
+    for (std::size_t i = 0; i < missing.size(); ++i) {
+        const auto alike = [&](const MissingBins& other) {
+            return other.count == missing[i].count && other.all == missing[i].all;
+        };
+        if (std::any_of(missing.begin(), missing.begin() + static_cast<std::ptrdiff_t>(i), alike)) continue;
+        std::vector<std::string> names;
+        for (const auto& other : missing)
+            if (alike(other))
+                names.push_back(other.of.empty() ? "some runs of the scene as it stands"
+                                                 : words_of(other.of));
+        const bool several = names.size() > 1 || missing[i].of.empty();
+        words.push_back(fmt::format("{} {} no value in {} of {} bins ({})", listed(names),
+                                    several ? "have" : "has", missing[i].count, missing[i].all,
+                                    percent(missing[i].share())));
+    }
+    return words;
+}
+
+}  // namespace
+
+std::string missing_words(const std::vector<MissingBins>& missing) {
+    std::vector<MissingBins> own, of_all;
+    std::ranges::copy_if(missing, std::back_inserter(own), [](const auto& m) { return !m.for_all; });
+    std::ranges::copy_if(missing, std::back_inserter(of_all), [](const auto& m) { return m.for_all; });
+    std::string text;
+    if (!own.empty()) text = listed(lacking_words(own)) + ", whose gap counts as not explained by it";
+    if (!of_all.empty())
+        text += (text.empty() ? "" : "; ") + listed(lacking_words(of_all)) + ", which are not compared";
     return text;
 }
 

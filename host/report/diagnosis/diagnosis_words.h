@@ -68,6 +68,16 @@ std::vector<NuisanceFit> suspects_of(const Diagnosis& diagnosis);
 /// "modulus: 2.30 ± 0.20 kPa higher than stated (4.6 times its stated error)".
 std::string suspect_words(const NuisanceFit& suspect);
 
+/// "16 sigma", of its uncertainty; "at least 12 sigma" at the end of the range that is tried.
+std::string sigma_words(const NuisanceFit& fit);
+
+/// "check what is stated: modulus of the grains must be 125 ± 5 % higher than stated to fit (16 sigma); all
+/// that follows assumes this shift"; empty if there is nothing to check.
+std::string check_words(const Diagnosis& diagnosis);
+
+/// "adhesion has no value in 4 of 8 bins (50 %), ..": what lacks bins; empty if nothing does.
+std::string missing_words(const std::vector<MissingBins>& missing);
+
 std::vector<std::string> words_of_all(const std::vector<std::string>& names);
 
 /// Whether the data are so few that no reduction would suffice: random effects take away nearly all of the
