@@ -54,8 +54,8 @@ constant Phase phases[PHASES] = {
 };
 
 /* Undamped contacts would need infinitely short steps. With this damping ratio, times two, vibrations grow by
-   a factor e in 16,000 periods. */
-#define LEAST_DAMPING R(2e-5)
+   a factor e in 32,000 periods. */
+#define LEAST_DAMPING R(1e-5)
 
 /* Largest omega dt for a gain and a damping C/(m omega). */
 INLINE lanes stable_phase(lanes gain, lanes damping) {

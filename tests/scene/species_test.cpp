@@ -246,7 +246,7 @@ const std::vector<SpeciesFile> files_with_species{
      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n4\nITEM: ATOMS id type x y z radius\n4 2 .2 .2 .1 .01\n"
      "1 2 .1 .1 .1 .01\n2 1 .2 .1 .1 .01\n3 1 .1 .2 .1 .01\n"},
     {"grains.data",
-     "title\n\n4 atoms\n\nAtoms # sphere\n\n4 2 .02 2500 .2 .2 .1\n1 2 .02 2500 .1 .1 .1\n"
+     "title\n\n4 atoms\n\nAtoms # sphere\n\n4 2 .02 11.5 .2 .2 .1\n1 2 .02 11.5 .1 .1 .1\n"
      "2 1 .02 11.5 .2 .1 .1\n3 1 .02 11.5 .1 .2 .1\n"},
 };
 const std::string file_box = "[box]\nsize_x = 0.3\nsize_y = 0.3\n[plate]\nstart = 0.3\nend = 0.2\n";
