@@ -15,6 +15,9 @@ inline std::string bits_of(const Recording& recording) {
         add(scan.time);
         add(scan.kinetic_energy);
         add(scan.elastic_energy);
+        for (const double term : {scan.wall_work, scan.weight_work, scan.damping_loss, scan.friction_loss,
+                                  scan.drag_loss, scan.energy_error})
+            add(term);
         add(scan.packing_fraction);
         for (const Vec3& force : scan.wall_force)
             for (int axis = 0; axis < 3; ++axis) add(force[axis]);

@@ -34,6 +34,12 @@ Recording synthetic_recording(const Size& size, int replica) {
         scan.settled = s % 2 == 0;
         scan.kinetic_energy = 1e-9 / (s + 1);
         scan.elastic_energy = 1e-3 * depth + replica / 3.0;
+        scan.wall_work = 1e-3 * s;
+        scan.weight_work = -1e-4 * s;
+        scan.damping_loss = 1e-5 * s;
+        scan.friction_loss = 2e-5 * s;
+        scan.drag_loss = 3e-5 * s;
+        scan.energy_error = -1e-9 * s;
         scan.packing_fraction = std::numeric_limits<double>::quiet_NaN();
         scan.branch_length = spacing * 0.99;
         for (int i = 0; i < size.grains; ++i)
@@ -84,6 +90,9 @@ std::string scan_difference(const Scan& a, const Scan& b, double tolerance) {
         if (!same(a.wall_force[wall], b.wall_force[wall], 0)) return "wall_force";
     if (!same(a.kinetic_energy, b.kinetic_energy, 0) || !same(a.elastic_energy, b.elastic_energy, 0))
         return "energies";
+    for (const auto term : {&Scan::wall_work, &Scan::weight_work, &Scan::damping_loss, &Scan::friction_loss,
+                            &Scan::drag_loss, &Scan::energy_error})
+        if (!same(a.*term, b.*term, 0)) return "energy budget";
     if (!same(a.coordination_number, b.coordination_number, 0) || !same(a.mean_force, b.mean_force, 0) ||
         !same(a.packing_fraction, b.packing_fraction, 0) || !same(a.branch_length, b.branch_length, 0))
         return "averages";

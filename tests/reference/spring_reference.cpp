@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/recording.h"
 #include "reference/step_reference.h"
 
 namespace reference {
@@ -50,8 +51,13 @@ void StepReference::carry_springs(const ReferenceContact& contact, const Body& a
     const Vec3& e = contact.direction;
     const Vec3 before = direction_before(contact, a, b, elapsed);
     const double twist = elapsed * (a.angular_velocity + b.angular_velocity).dot(e) / 2;
-    memory.spring = turned(memory.spring, before, e, twist);
-    memory.rolling = turned(memory.rolling, before, e, twist);
+    if (elapsed == 0) {  // a report: the springs have not been turned to the present normal yet
+        memory.spring = across(memory.spring, e);
+        memory.rolling = across(memory.rolling, e);
+    } else {
+        memory.spring = turned(memory.spring, before, e, twist);
+        memory.rolling = turned(memory.rolling, before, e, twist);
+    }
     const double now = contact.contact_radius;
     const double followed = std::clamp(memory.contact_radius, now, (1 + radius_slack_) * now);
     if (memory.contact_radius > 0) {
