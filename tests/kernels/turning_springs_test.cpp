@@ -77,8 +77,7 @@ TEST(TurningSpring, TurnsWithThePair) {
             MovedPair pair(way, MovedPair::start(2e-4, 0.5, FrictionLaw::mindlin));
             pair.move_second({0, shear, 0}, 200);
             const Vec3 n = pair.normal(), force = pair.tangential(), t = force.normalized();
-            const std::vector<Vec3> axes{n, t, n.cross(t), (n + t).normalized(),
-                                         (t + n.cross(t)).normalized()};
+            const std::vector<Vec3> axes{n, t, n.cross(t), (t + n.cross(t)).normalized()};
             for (int quarter = 1; quarter <= 4; ++quarter) {
                 pair.turn_together(axes[k], pi / 2, 500);
                 const Vec3 wanted = Eigen::AngleAxisd(quarter * pi / 2, axes[k]) * force;

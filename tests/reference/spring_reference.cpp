@@ -16,8 +16,7 @@ Vec3 across(const Vec3& v, const Vec3& e) { return v - v.dot(e) * e; }
 /// and a rotation by `twist` about `now`.
 Vec3 turned(const Vec3& v, const Vec3& before, const Vec3& now, double twist) {
     const Vec3 moved = Eigen::AngleAxisd(twist, now) * (Eigen::Quaterniond::FromTwoVectors(before, now) * v);
-    const Vec3 level = across(moved, now);
-    return level.norm() > 0 ? Vec3(level * (v.norm() / level.norm())) : level;
+    return across(moved, now);
 }
 
 /// Adds stiffness times the way to `spring`, the force of a damped spring that yields at `limit`. Returns its
