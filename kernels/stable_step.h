@@ -146,11 +146,17 @@ INLINE Yielding yielding_of(Grain at, EXCHANGE const ContactTable* table) {
     for (int k = 0; k < CONTACT_SLOTS(at); ++k) force += table->elastic[k];
     return yielding(at, force * stress_per_force(at));
 }
+/* Delayed displacement by a contact's own force F beyond Hertz, over F/(E R). */
+INLINE lanes delayed_self(Grain at, Yielding y, lanes relative) {
+    return whole_self_displacement(at, self_terms_here(at), relative) * (y.work - known_share(at, relative));
+}
+/* Derivative of a contact's delayed own displacement with respect to its force, which is proportional to the
+   cube of the contact radius a: that of F f(a/R) is f + (a/R) f'/3. */
 INLINE lanes own_response(Grain at, Yielding y, lanes contact_radius) {
     const lanes relative = contact_radius / at.now.radius;
-    const lanes own = whole_self_displacement(at, self_terms_here(at), relative);
+    const lanes self = delayed_self(at, y, relative), larger = delayed_self(at, y, R(1.03) * relative);
     return R(2) / R(3) * (R(1) - y.hertz) * hertz_share(at) / contact_radius +
-           own_compliance(at) / at.now.radius * own * (y.work - known_share(at, relative));
+           own_compliance(at) / at.now.radius * (self + (larger - self) / R(0.09));
 }
 
 /* Sums along the axis over the slots of this work-item: K and C of normal and of tangential forces, and
