@@ -50,8 +50,9 @@ struct Scan {
     double kinetic_energy = 0;  ///< [J]
     double elastic_energy = 0;  ///< [J]
     bool settled = false;       ///< the settling criterion was met
-    double rate_error = std::numeric_limits<double>::quiet_NaN();  ///< estimated relative error of forces
-                                                                   ///< caused by the plate's speed
+    double rate_error =
+        std::numeric_limits<double>::quiet_NaN();  ///< estimated relative error of the mean force
+                                                   ///< over packings, caused by the plate's speed
     double coordination_number = 0;  ///< Z: contacts per grain, including walls, above the scene's threshold
     double mean_force = 0;           ///< <f>: mean |force| of those contacts [N]
     double packing_fraction = 0;     ///< phi, in the space more than a mean diameter from every wall
