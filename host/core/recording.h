@@ -60,7 +60,8 @@ struct Scan {
     double energy_error = unknown;  ///< change of stored energy, plus losses, minus work: created by the time
                                     ///< step if positive; lost by viscoelasticity or plasticity if negative
     bool settled = false;           ///< the settling criterion was met
-    double rate_error = unknown;    ///< estimated relative error of forces caused by the plate's speed
+    double rate_error = unknown;  ///< estimated relative error of the mean force over packings, caused by the
+                                  ///< plate's speed
     double coordination_number = 0;  ///< Z: contacts per grain, including walls, above the scene's threshold
     double mean_force = 0;           ///< <f>: mean |force| of those contacts [N]
     double packing_fraction = 0;     ///< phi, in the space more than a mean diameter from every wall

@@ -27,6 +27,12 @@ struct ModelTable {
         not_available;  ///< largest estimate of the engine at or above a tenth of the top force
 };
 
+/// Packings that are compressed at different speeds take different courses where grains rearrange. Single
+/// scans therefore differ by this much more than the mean over packings, of which `Scan::rate_error` is the
+/// estimate; not exceeded by 95 % of the scans of packings of 514 grains (scenes/README.md,
+/// scripts/plate_speed).
+inline constexpr double course_error = 0.07;
+
 /// Largest estimate at or above a tenth of the largest load (stress_strain.h); NaN if there is none.
 double largest_rate_error(const Replicas& replicas);
 

@@ -60,11 +60,11 @@ struct Plate {
 
 struct Protocol {
     int cycles = 1;
-    int discard = 0;               ///< number of first cycles that metrics ignore
-    int scans_per_stroke = 30;     ///< equally spaced; the last of each stroke at its end
-    bool stop_at_scans = false;    ///< the plate waits at each scan until the packing settles
-    double rate_tolerance = 0.01;  ///< maximum estimated relative error of forces caused by the plate's
-                                   ///< speed; 0: always plate.speed
+    int discard = 0;                        ///< number of first cycles that metrics ignore
+    int scans_per_stroke = 30;              ///< equally spaced; the last of each stroke at its end
+    bool stop_at_scans = false;             ///< the plate waits at each scan until the packing settles
+    double rate_tolerance = 0.01;           ///< maximum estimated relative error of mean forces over packings
+                                            ///< caused by the plate's speed; 0: always plate.speed
     double settle_unbalanced_force = 1e-3;  ///< a scan is taken when the net forces on grains fall below this
     double settle_time = 0.5;  ///< a scan is taken after this time at the latest, marked as unsettled [s]
     double settle_drag = 1e6;  ///< on velocities and spins while the plate stands still; removes at most half

@@ -22,9 +22,9 @@ struct PackingScale {
 };
 PackingScale scale_of(const Replica& replica, const Packing& packing);
 
-/// Upper estimate of the relative error of forces over the inertial number. The mean error of the top force,
-/// measured with `mcdem converge` on packings of 216 and 514 grains, is four to seven times I
-/// (scenes/README.md).
+/// Upper estimate, over the inertial number, of the relative error of forces averaged over packings. Measured
+/// with `mcdem converge` on packings of 216 and 514 grains it is four to seven times I. Single packings take
+/// other courses at other speeds and differ by more (scenes/README.md, scripts/plate_speed).
 inline constexpr double error_per_inertial_number = 10;
 
 class QuasiStatic {

@@ -62,8 +62,8 @@ constexpr double slow_tolerance = 0.01;
 std::string_view slow_enough(const Model& m) {
     const double tolerance = m.replica.protocol.rate_tolerance;
     return tolerance > 0 && tolerance <= slow_tolerance
-               ? "protocol.rate_tolerance keeps what the plate's speed and inertia add below 1 % of any "
-                 "force; `mcdem converge` measures it"
+               ? "protocol.rate_tolerance keeps what the plate's speed and inertia add below 1 % of mean "
+                 "forces; `mcdem converge` measures it"
                : "";
 }
 

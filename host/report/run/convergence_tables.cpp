@@ -116,6 +116,8 @@ TextTable table_of_convergence(const Convergence& convergence) {
     table.notes = {
         fmt::format("largest error over phases and displacements, {} {}", convergence.replicas,
                     convergence.copies),
+        "errors of the mean over these; single runs differ more, since packings at other speeds take other "
+        "courses",
         "sd: standard deviation of these, or twice what the observable resolves",
         fmt::format("*: beyond {:.2g} % (forces) or {:.2g} sd (all else), and by four standard errors",
                     100 * convergence.limits.force, convergence.limits.deviations)};

@@ -36,12 +36,18 @@ std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
     return notes;
 }
 
-/// If it is large, also which key to set and how to measure it.
-std::string rate_note(const std::string& what, double rate_error) {
+std::string per_cent(double error) {
+    return (error < 0.995 ? fmt::format("{:.2g}", 100 * error) : three_digits(100 * error)) + " %";
+}
+
+/// If it is large, also which key to set and how to measure it. Single scans were measured for plates only.
+std::string rate_note(bool cell, double rate_error) {
     constexpr double too_much = 0.02;
-    std::string note = fmt::format(
-        "{} at most {} % (estimate)", what,
-        rate_error < 0.995 ? fmt::format("{:.2g}", 100 * rate_error) : three_digits(100 * rate_error));
+    std::string note = fmt::format("error of {}: at most {} in the mean over packings",
+                                   cell ? "stresses by the strain rate" : "forces by the plate's speed",
+                                   per_cent(rate_error));
+    if (!cell) note += fmt::format(", {} in 95 % of single scans", per_cent(rate_error + course_error));
+    note += " (estimate)";
     if (rate_error > too_much)
         note += "; set protocol.rate_tolerance to reduce it; `mcdem converge` measures it";
     return note;
@@ -223,10 +229,7 @@ TextTable table_of(const std::vector<Told>& told, bool cells) {
         table.notes.push_back(
             "p: mean stress, q: deviatoric stress, sqrt(3/2 s:s); strains over the lengths "
             "at start, compression positive");
-    if (std::isfinite(rate_error))
-        table.notes.push_back(rate_note(
-            cells ? "error of stresses by the strain rate:" : "error of forces by the plate's speed:",
-            rate_error));
+    if (std::isfinite(rate_error)) table.notes.push_back(rate_note(cells, rate_error));
     return table;
 }
 
@@ -265,8 +268,7 @@ TextTable table_of_models(const ModelTable& models) {
         if (row.beyond)
             table.notes.push_back(beyond_note(
                 words_for(row.setting), number(row.beyond->displacement * 1e3, 2) + " mm", *row.beyond));
-    if (std::isfinite(models.rate_error))
-        table.notes.push_back(rate_note("error of forces by the plate's speed:", models.rate_error));
+    if (std::isfinite(models.rate_error)) table.notes.push_back(rate_note(false, models.rate_error));
     return table;
 }
 
