@@ -23,7 +23,8 @@ constexpr const char* header =
     "x_min_force_N,x_max_force_N,y_min_force_N,y_max_force_N,coordination_number,mean_force_N,"
     "packing_fraction,branch_length_m,max_overlap,stress_xx_Pa,stress_yy_Pa,stress_zz_Pa,stress_yz_Pa,stress_"
     "xz_Pa,"
-    "stress_xy_Pa,kinetic_energy_J,elastic_energy_J,settled,rate_error,wall_work_J,weight_work_J,damping_loss_J,"
+    "stress_xy_Pa,kinetic_energy_J,elastic_energy_J,settled,rate_error,wall_work_J,weight_work_J,damping_"
+    "loss_J,"
     "friction_loss_J,drag_loss_J,energy_error_J";
 
 constexpr std::pair<int, int> voigt[] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};

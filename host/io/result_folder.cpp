@@ -33,7 +33,7 @@ std::optional<int> segment_index(const fs::path& file) {
 /// Whether it may be removed: a result file, not a link or a file of others with such a name.
 bool is_segment(const fs::path& file) {
     try {
-        return !fs::is_symlink(file) && fs::is_regular_file(file) && (ResultFile(file), true);
+        return look_at_itself(file) == At::file && (ResultFile(file), true);
     } catch (const InputError&) {
         return false;
     }

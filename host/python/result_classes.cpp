@@ -171,7 +171,8 @@ void bind_scan_arrays(py::class_<OneRecording>& recording) {
             "scans", list_property(&Recording::scans, scan_type),
             "[S] rows with the fields of /observables in run.h5: frame, cycle, phase (0 load, 1 "
             "unload), settled, time [s], plate_z [m], kinetic_energy [J], elastic_energy [J], "
-            "wall_work, weight_work, damping_loss, friction_loss, drag_loss, energy_error (the energy budget) "
+            "wall_work, weight_work, damping_loss, friction_loss, drag_loss, energy_error (the energy "
+            "budget) "
             "[J], rate_error, coordination_number, mean_force [N], packing_fraction, "
             "branch_length [m].")
         .def_property_readonly(

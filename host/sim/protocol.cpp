@@ -29,7 +29,6 @@ constexpr double position_rounding = 1e-12;
 double force_along_z(const IntervalResult& result, Wall wall) {
     return result.wall_force[static_cast<std::size_t>(wall)].z();
 }
-
 }  // namespace
 
 ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const PackingScale& scale)

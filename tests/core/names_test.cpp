@@ -48,7 +48,9 @@ TEST(Names, WordsGiveTheirValues) {
     EXPECT_EQ(name_list<Wall>.size(), static_cast<std::size_t>(wall_count));
 }
 
-TEST(Names, ListForMessages) { EXPECT_EQ(all_names<FrictionLaw>(), "saturated, mindlin, mindlin_displacement"); }
+TEST(Names, ListForMessages) {
+    EXPECT_EQ(all_names<FrictionLaw>(), "saturated, mindlin, mindlin_displacement");
+}
 
 }  // namespace
 }  // namespace mcdem

@@ -44,7 +44,7 @@ mcdem::EnergyTerms advanced(Batch& batch, EnergyBudget& budget, int steps, doubl
     return budget.terms();
 }
 
-double rounding() { return has_double() ? 1e-7 : 1e-3; }
+double rounding_error() { return has_double() ? 1e-7 : 1e-3; }
 
 // A plate presses one grain onto the floor without waves: its work is stored by the two contacts.
 TEST(EnergyBudget, WorkOfThePlateIsStored) {
@@ -116,7 +116,7 @@ TEST(EnergyBudget, WeightAndDragOfAFreeGrain) {
     const auto terms = advanced(batch, budget, steps);
     const double fallen = 0.8 - batch.engine().state(0).position[0].z();
     ASSERT_GT(fallen, 0.01);
-    EXPECT_NEAR(terms.weight_work / (mass / 2 * 9.81 * fallen), 1, 1e-4 + rounding());
+    EXPECT_NEAR(terms.weight_work / (mass / 2 * 9.81 * fallen), 1, 1e-4 + rounding_error());
     EXPECT_GT(terms.drag_loss, 0.05 * terms.weight_work);
     EXPECT_LT(std::abs(terms.energy_error), 3e-4 * terms.weight_work);  // first order in drag times step
 }

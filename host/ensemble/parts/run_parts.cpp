@@ -46,15 +46,13 @@ bool belongs_to_parts(const fs::path& folder, const fs::path& file) {
 /// Removes merged parts. Files of others are kept, with their folder, and what is behind a link is not
 /// touched.
 void remove_parts(const fs::path& folder) {
-    std::error_code missing;
-    if (!fs::is_symlink(folder)) {
+    if (look_at_itself(folder) == At::folder) {
         remove_temporaries(folder);
-        std::vector<fs::path> own;
-        for (const auto& entry : fs::directory_iterator(folder, missing))
-            if (belongs_to_parts(folder, entry.path())) own.push_back(entry.path());
-        for (const fs::path& file : own) fs::remove_all(file);
+        for (const fs::path& file : entries_of(folder))
+            if (belongs_to_parts(folder, file)) fs::remove_all(file);
     }
-    fs::remove(folder, missing);
+    std::error_code not_empty;
+    fs::remove(folder, not_empty);
 }
 
 bool is_merged(const fs::path& folder) {

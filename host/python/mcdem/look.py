@@ -26,3 +26,8 @@ def is_file(path):
 def is_folder(path):
     mode = _mode(path)
     return mode is not None and stat.S_ISDIR(mode)
+
+
+def is_link(path):
+    mode = _mode(path, follow_links=False)
+    return mode is not None and stat.S_ISLNK(mode)

@@ -22,7 +22,7 @@ import site
 
 def named_folders():
     """Of PYTHONPATH. An empty or relative entry means a folder relative to the current one, and is left out."""
-    return [folder for folder in os.environ.get("PYTHONPATH", "").split(os.pathsep) if os.path.isabs(folder)]
+    return [folder for folder in os.environ.get("PYTHONPATH", "").split(os.pathsep) if folder.startswith("/")]
 
 
 def is_own(folder):
@@ -31,7 +31,7 @@ def is_own(folder):
         there = os.stat(folder)
     except OSError:
         return False
-    return os.path.isabs(folder) and there.st_uid == os.geteuid() and not there.st_mode & 0o002
+    return folder.startswith("/") and there.st_uid == os.geteuid() and not there.st_mode & 0o002
 
 
 def user_folders():

@@ -14,8 +14,8 @@
 #include "metrics/model_table.h"
 #include "metrics/programmes.h"
 #include "report/page/labels.h"
-#include "report/run/figure_values.h"
 #include "report/run/energy_table.h"
+#include "report/run/figure_values.h"
 #include "report/run/tables.h"
 
 namespace mcdem::inline report {

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..files import expect_replaceable, write_whole
+from ..look import is_file, is_link, is_there
 from .run_file import PERIODIC, PLATE, Contacts
 
 GUIDE_NAME = "README.txt"
@@ -69,7 +70,7 @@ def export_replica(replica, folder, is_chosen):
             for what, grid in grids.items():
                 file = folder / f"{what}_{scan.frame:06}.hdf"
                 expect_replaceable(file, "an export", b"\x89HDF\r\n", b"VTKHDF")
-                if file.exists() and file.stat().st_size > 0 and not is_own(file):
+                if is_there(file) and file.stat().st_size > 0 and not is_own(file):
                     raise InputError(f"{file}: is not an export; it is not replaced: give another path (--out), or remove it first")
                 write_whole(file, grid_bytes(scan, *grid))
                 written.add(file)
@@ -92,9 +93,9 @@ def remove_others(folder, written):
     behind a symbolic link: the folder may be that of something else."""
     for file in sorted(set(folder.iterdir()) - written):
         if re.fullmatch(r"(grains|contacts|forces|walls)_\d*\.hdf", file.name):
-            if folder.is_symlink() or file.is_symlink():
+            if is_link(folder) or is_link(file):
                 why = "is reached by a symbolic link"
-            elif not file.is_file() or not is_own(file):
+            elif not is_file(file) or not is_own(file):
                 why = "is not an export"
             else:
                 file.unlink()
