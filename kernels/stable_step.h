@@ -62,6 +62,7 @@ INLINE lanes stable_phase(lanes gain, lanes damping) {
     const lanes removed = fmax(damping, (lanes)(LEAST_DAMPING));
     mask stable = AS_MASK(gain < R(1));
     lanes longest = R(0);
+#pragma unroll 1 /* unrolled loops would need too many registers on GPUs */
     for (int i = 0; i < PHASES; ++i) {
         const lanes left = fmax(R(1) - gain * phases[i].real_part, (lanes)(R(0)));
         const lanes root = sqrt(left);
@@ -143,6 +144,7 @@ INLINE ContactStiffness contact_stiffness(Grain at, Neighbours neighbour, Displa
 /* Displacement at small strain to that at finite strain, for a pressure that does not change. */
 INLINE Yielding yielding_of(Grain at, EXCHANGE const ContactTable* table) {
     lanes force = R(0);
+#pragma unroll 1
     for (int k = 0; k < CONTACT_SLOTS(at); ++k) force += table->elastic[k];
     return yielding(at, force * stress_per_force(at));
 }

@@ -138,8 +138,9 @@ TEST(bad_folder, tables_that_are_not_files_are_reported) {
     };
     for (const std::string name : {"plate.csv", "grains.csv", "contacts.csv", "experiment.toml"}) {
         const std::string must = name + ": must be a ";
-        EXPECT_THAT(error_with(name, [](const fs::path& file) { fs::create_symlink(file, file); }),
-                    StartsWith(must));
+        // A loop of links says nothing of what is there.
+        EXPECT_THROW(error_with(name, [](const fs::path& file) { fs::create_symlink(file, file); }),
+                     RunError);
         EXPECT_THAT(error_with(name, [](const fs::path& file) { fs::create_symlink("nowhere", file); }),
                     StartsWith(must));
         EXPECT_THAT(error_with(name, [](const fs::path& file) { fs::create_symlink("/dev/zero", file); }),

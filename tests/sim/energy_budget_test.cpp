@@ -15,7 +15,8 @@ using mcdem::IntervalResult;
 using Verdict = EnergyBudget::Verdict;
 using std::numbers::pi;
 
-constexpr double radius = 0.01, mass = 1000 * 4.0 / 3 * pi * radius * radius * radius;
+constexpr double grain_radius = 0.01,
+                 grain_mass = 1000 * 4.0 / 3 * pi * grain_radius * grain_radius * grain_radius;
 
 Replica plain_replica() {
     Replica replica = test_replica(ContactModel::independent);
@@ -50,16 +51,16 @@ double rounding_error() { return has_double() ? 1e-7 : 1e-3; }
 TEST(EnergyBudget, WorkOfThePlateIsStored) {
     Replica replica = plain_replica();
     replica.grains.restitution = replica.walls.restitution = 0.1;
-    replica.box = {6 * radius, 6 * radius};
-    replica.plate.start = 2 * radius;
-    const Start start{replica, {{{3 * radius, 3 * radius, radius}}, {2 * radius}}};
+    replica.box = {6 * grain_radius, 6 * grain_radius};
+    replica.plate.start = 2 * grain_radius;
+    const Start start{replica, {{{3 * grain_radius, 3 * grain_radius, grain_radius}}, {2 * grain_radius}}};
     Batch batch(build(finest()), start);
     EnergyBudget budget = budget_of(start);
     const double dt = batch.engine().time_step(0);
     const int steps = 20000;
     const auto terms = advanced(batch, budget, steps, -0.002 / (steps * dt));
     const double modulus = 1e5 / (1 - 0.09), overlap = 0.001;
-    const double stored = 2 * 8.0 / 15 * modulus * std::sqrt(radius) * std::pow(overlap, 2.5);
+    const double stored = 2 * 8.0 / 15 * modulus * std::sqrt(grain_radius) * std::pow(overlap, 2.5);
     EXPECT_NEAR((terms.wall_work - terms.damping_loss) / stored, 1, 1e-3);
     EXPECT_LT(std::abs(terms.energy_error), 1e-5 * stored);
     EXPECT_GT(terms.damping_loss, 0);
@@ -69,12 +70,13 @@ TEST(EnergyBudget, WorkOfThePlateIsStored) {
 TEST(EnergyBudget, DampingTakesTheLossOfACollision) {
     Replica replica = plain_replica();
     replica.grains.restitution = 0.7;
-    const Start start = free_cluster(replica, {{0, 0, 0}, {2.001 * radius, 0, 0}}, {2 * radius, 2 * radius});
+    const Start start = free_cluster(replica, {{0, 0, 0}, {2.001 * grain_radius, 0, 0}},
+                                     {2 * grain_radius, 2 * grain_radius});
     Batch batch(build(finest()), start);
     batch.engine().set_velocities(0, {{0.1, 0, 0}, {-0.1, 0, 0}}, std::vector<Vec3>(2, Vec3::Zero()));
     EnergyBudget budget = budget_of(start);
     const auto terms = advanced(batch, budget, 4000);
-    const double before = mass * 0.01, loss = (1 - 0.49) * before;
+    const double before = grain_mass * 0.01, loss = (1 - 0.49) * before;
     // The damping force at first touch pulls nothing back: the restitution is 0.7 within 1 %.
     EXPECT_NEAR(terms.damping_loss / loss, 1, 0.02);
     EXPECT_LT(std::abs(terms.energy_error), 2e-3 * before);  // of second order in the step
@@ -90,16 +92,16 @@ TEST(EnergyBudget, FrictionTakesTwoSeventhsUntilAGrainRolls) {
         replica.box = {1, 1};
         replica.plate.start = 0.1;
         const double modulus = 1e5 / (1 - 0.09);
-        const double sunk = std::pow(mass * 9.81 * 0.75 / modulus / std::sqrt(radius), 2.0 / 3);
-        const Start start{replica, {{{0.3, 0.5, radius - sunk}}, {2 * radius}}};
+        const double sunk = std::pow(grain_mass * 9.81 * 0.75 / modulus / std::sqrt(grain_radius), 2.0 / 3);
+        const Start start{replica, {{{0.3, 0.5, grain_radius - sunk}}, {2 * grain_radius}}};
         Batch batch(build(finest()), start);
         batch.engine().set_velocities(0, {{0.1, 0, 0}}, {Vec3::Zero()});
         EnergyBudget budget = budget_of(start);
         const auto terms = advanced(batch, budget, 4000);
-        const double before = mass * 0.01 / 2;
+        const double before = grain_mass * 0.01 / 2;
         EXPECT_NEAR(terms.friction_loss / before, 2.0 / 7, 0.01) << mcdem::name(law);
         // Friction follows the motion by a step: the first one's work is missing.
-        const double of_a_step = 0.5 * mass * 9.81 * 0.1 * batch.engine().time_step(0);
+        const double of_a_step = 0.5 * grain_mass * 9.81 * 0.1 * batch.engine().time_step(0);
         EXPECT_LT(std::abs(terms.energy_error), 1.5 * of_a_step) << mcdem::name(law);
     }
 }
@@ -109,14 +111,14 @@ TEST(EnergyBudget, WeightAndDragOfAFreeGrain) {
     Replica replica = plain_replica();
     replica.grains.excess_density = 500;
     replica.grains.drag = 3;
-    const Start start = free_cluster(replica, {{0, 0, 0.3}}, {2 * radius});
+    const Start start = free_cluster(replica, {{0, 0, 0.3}}, {2 * grain_radius});
     Batch batch(build(finest()), start);
     EnergyBudget budget = budget_of(start);
     const int steps = 3000;
     const auto terms = advanced(batch, budget, steps);
     const double fallen = 0.8 - batch.engine().state(0).position[0].z();
     ASSERT_GT(fallen, 0.01);
-    EXPECT_NEAR(terms.weight_work / (mass / 2 * 9.81 * fallen), 1, 1e-4 + rounding_error());
+    EXPECT_NEAR(terms.weight_work / (grain_mass / 2 * 9.81 * fallen), 1, 1e-4 + rounding_error());
     EXPECT_GT(terms.drag_loss, 0.05 * terms.weight_work);
     EXPECT_LT(std::abs(terms.energy_error), 3e-4 * terms.weight_work);  // first order in drag times step
 }
@@ -157,7 +159,7 @@ IntervalResult report(double work, double elastic, double kinetic) {
 }
 
 TEST(EnergyBudget, DissipationThatFallsIsNoticedBeforeItIsTooMuch) {
-    const Start start = free_cluster(plain_replica(), {{0, 0, 0}}, {2 * radius});
+    const Start start = free_cluster(plain_replica(), {{0, 0, 0}}, {2 * grain_radius});
     EnergyBudget budget = budget_of(start);
     budget.add(report(0, 0, 0));
     budget.add(report(1.1, 1, 0));  // 0.1 dissipated
@@ -174,7 +176,7 @@ TEST(EnergyBudget, DissipationThatFallsIsNoticedBeforeItIsTooMuch) {
 }
 
 TEST(EnergyBudget, ContactsWithoutAPotentialAreNotJudged) {
-    Start start = free_cluster(plain_replica(), {{0, 0, 0}}, {2 * radius});
+    Start start = free_cluster(plain_replica(), {{0, 0, 0}}, {2 * grain_radius});
     start.replica.effects.viscoelasticity = 0.3;
     EnergyBudget budget = budget_of(start);
     budget.add(report(0, 0, 0));
