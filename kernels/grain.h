@@ -34,12 +34,13 @@ private                     \
 INLINE void share(lanes value, int q, EXCHANGE real* scratch) {
     scratch[q * SHARED_ROW + get_local_id(0) % SLOTS] = value;
 }
-#define OVER_SLOTS(name, combine)                                                                    \
-    INLINE real name(lanes value, int q, EXCHANGE const real* scratch) {                             \
-        (void)value;                                                                                 \
-        real all = scratch[q * SHARED_ROW];                                                          \
-        for (int slot = 1; slot < SLOTS; ++slot) all = combine(all, scratch[q * SHARED_ROW + slot]); \
-        return all;                                                                                  \
+#define OVER_SLOTS(name, combine)                                                                        \
+    INLINE real name(lanes value, int q, EXCHANGE const real* scratch) {                                 \
+        (void)value;                                                                                     \
+        real all = scratch[q * SHARED_ROW];                                                              \
+        _Pragma("unroll 8") /* whole loops of several sums would need too many registers */              \
+            for (int slot = 1; slot < SLOTS; ++slot) all = combine(all, scratch[q * SHARED_ROW + slot]); \
+        return all;                                                                                      \
     }
 #define PLUS(a, b) ((a) + (b))
 OVER_SLOTS(sum_slots, PLUS)
