@@ -19,11 +19,12 @@ constexpr double least_energy = 1e-9;
 double tolerance_of(const Replica& replica) {
     const ContactModel model = replica.contact.model;
     const Effects& e = replica.effects;
-    // The state of these contacts has no potential.
-    if (e.viscoelasticity > 0 || e.plasticity > 0 || e.bulge_contacts != 1) return HUGE_VAL;
+    // The forces of these contacts have no exact potential.
+    if (e.viscoelasticity > 0 || e.plasticity > 0 || e.adhesion > 0 || e.cohesion > 0 ||
+        e.bulge_contacts != 1)
+        return HUGE_VAL;
     const bool half_space = model == ContactModel::elastic_half_space || model == ContactModel::mc_dem;
-    return half_space || e.stiffening != 0 || e.adhesion > 0 || e.cohesion > 0 ? rough_tolerance
-                                                                               : exact_tolerance;
+    return half_space || e.stiffening != 0 ? rough_tolerance : exact_tolerance;
 }
 
 }  // namespace

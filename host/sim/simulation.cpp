@@ -207,6 +207,10 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
 bool Simulation::take_note(int replica, const IntervalResult& result) {
     auto& runner = runners_[replica];
     const bool relaxes = runner.state().stage == ProtocolState::Stage::relax;
+    const Protocol& protocol = scene_.replicas[replica].protocol;
+    // Only a strong drag tells whether grains are at rest.
+    const bool stops = runner.state().stage == ProtocolState::Stage::settle && protocol.stop_at_scans &&
+                       protocol.pause == 0 && protocol.settle_drag > 0;
     plates_[replica].on_interval_done(result);
     budgets_[replica].add(result);
     Outcome outcome{replica, result, budgets_[replica].terms(), {}, {}};
@@ -221,7 +225,7 @@ bool Simulation::take_note(int replica, const IntervalResult& result) {
         outcome.scan.reset();
         outcome.failure = Failure{runner.state().step, -1, created_energy(budgets_[replica].created())};
         runner.stop();
-    } else if (outcome.scan && outcome.scan->settled && !is_cell(scene_.replicas[replica].box) &&
+    } else if (outcome.scan && outcome.scan->settled && stops && !is_cell(scene_.replicas[replica].box) &&
                !imbalance(result, scale_[replica].weight).empty()) {
         outcome.scan.reset();
         outcome.failure = Failure{runner.state().step, -1, imbalance(result, scale_[replica].weight)};

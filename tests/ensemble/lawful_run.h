@@ -85,10 +85,12 @@ inline void expect_overlaps_within_limit(const Replica& replica, const Packing& 
 /// space, with stiffening and with attraction it is an approximation.
 inline void expect_dissipation_grows(const Replica& replica, const Recording& recording) {
     const Effects& e = replica.effects;
-    if (e.viscoelasticity > 0 || e.plasticity > 0 || e.bulge_contacts != 1) return;
+    if (e.viscoelasticity > 0 || e.plasticity > 0 || e.adhesion > 0 || e.cohesion > 0 ||
+        e.bulge_contacts != 1)
+        return;
     const ContactModel model = replica.contact.model;
-    const bool rough = model == ContactModel::mc_dem || model == ContactModel::elastic_half_space ||
-                       e.stiffening != 0 || e.adhesion > 0 || e.cohesion > 0;
+    const bool rough =
+        model == ContactModel::mc_dem || model == ContactModel::elastic_half_space || e.stiffening != 0;
     double most = -HUGE_VAL, stored = 0;
     for (const Scan& scan : recording.scans) {
         const double dissipated = scan.damping_loss + scan.friction_loss + scan.drag_loss - scan.energy_error;
