@@ -2,6 +2,7 @@
    Forces are the contact forces, weight minus buoyancy, and drag; grains have the moment of inertia of a
    homogeneous sphere. In a deformed cell the equations of motion are SLLOD (Evans & Morriss 1984),
    X' = F^-1 v, m v' = force - m F' F^-1 v. */
+
 /* F' F^-1 v of a grain in a cell [m/s2]. */
 INLINE lanes3 flow_of_motion(Grain at) {
     const Deformation f = deformation(at.replica, at.elapsed);

@@ -82,8 +82,7 @@ INLINE void measure_contacts(Grain at, Batch batch, MeasuredRows rows, EXCHANGE 
     }
 }
 
-/* Sums of vectors and tensors over the slots of a grain, for all of its work-items. `first`: row of scratch.
- */
+/* Sums of vectors and tensors over the slots of a grain, for all of its work-items. */
 INLINE lanes3 whole_vector(lanes3 value, EXCHANGE real* scratch) {
     SYNCHRONISE();
     share(value.x, 0, scratch);

@@ -95,13 +95,15 @@ std::string cause_of(const IntervalResult& result, const Replica& replica, int s
     return cause;
 }
 
-std::string created_energy(double created) {
+/// Why the time step is too long by the energy that it has created; empty if it is not.
+std::string created_energy(const EnergyBudget& budget) {
+    if (budget.verdict() != EnergyBudget::Verdict::too_much_created) return "";
     return fmt::format(
         "the time step has created energy, {:.1f} % of the largest stored energy: the dissipated energy "
         "falls "
         "(lower numerics.time_step or compress less; or set numerics.precision = \"double\" if overlaps are "
         "below 1e-4 of a diameter)",
-        100 * created);
+        100 * budget.created());
 }
 
 /// Why the forces on the walls and the weight [N] do not balance although the grains are at rest; empty if
@@ -217,18 +219,14 @@ bool Simulation::take_note(int replica, const IntervalResult& result) {
     if (budgets_[replica].verdict() == EnergyBudget::Verdict::creates_energy && engine_.shorten(replica))
         budgets_[replica].correct();
     outcome.scan = runner.on_interval_done(result, plates_[replica].arrived(engine_.max_plate_move(replica)));
-    if (result.status) {
+    std::string broken = created_energy(budgets_[replica]);
+    if (broken.empty() && stops && outcome.scan && outcome.scan->settled &&
+        !is_cell(scene_.replicas[replica].box))
+        broken = imbalance(result, scale_[replica].weight);
+    if (result.status || !broken.empty()) {
         outcome.scan.reset();
-        outcome.failure = failure(replica, result, relaxes);
-        runner.stop();
-    } else if (budgets_[replica].verdict() == EnergyBudget::Verdict::too_much_created) {
-        outcome.scan.reset();
-        outcome.failure = Failure{runner.state().step, -1, created_energy(budgets_[replica].created())};
-        runner.stop();
-    } else if (outcome.scan && outcome.scan->settled && stops && !is_cell(scene_.replicas[replica].box) &&
-               !imbalance(result, scale_[replica].weight).empty()) {
-        outcome.scan.reset();
-        outcome.failure = Failure{runner.state().step, -1, imbalance(result, scale_[replica].weight)};
+        outcome.failure =
+            result.status ? failure(replica, result, relaxes) : Failure{runner.state().step, -1, broken};
         runner.stop();
     } else if (!runner.hindrance().empty()) {
         outcome.failure = Failure{runner.state().step, -1, runner.hindrance()};
@@ -297,11 +295,9 @@ Scan Simulation::scan(const Outcome& outcome, ReplicaState state) const {
 }
 
 Failure Simulation::failure(int replica, const IntervalResult& result, bool relaxes) const {
-    const EnergyBudget& budget = budgets_[static_cast<std::size_t>(replica)];
-    if (budget.verdict() == EnergyBudget::Verdict::too_much_created)
-        return {runners_[replica].state().step, result.failed_grain, created_energy(budget.created())};
+    const std::string created = created_energy(budgets_[static_cast<std::size_t>(replica)]);
     return {runners_[replica].state().step, result.failed_grain,
-            cause_of(result, scene_.replicas[replica], scene_.slots, relaxes)};
+            created.empty() ? cause_of(result, scene_.replicas[replica], scene_.slots, relaxes) : created};
 }
 
 double Simulation::progress() const {
