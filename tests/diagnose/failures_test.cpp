@@ -13,16 +13,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-struct World {
-    World() {
-        synthetic.add_effect(evidence, "adhesion", synthetic.pattern(1));
-        synthetic.add_effect(evidence, "friction", synthetic.pattern(1));
-        synthetic.add_nuisance(evidence, "modulus", synthetic.pattern(0.5), 1);
-        evidence.observed += 4 * evidence.library.effects[0].linear;
-    }
-    SyntheticWorld synthetic{6, 3};
-    Evidence evidence = synthetic.evidence(1, 16);
-};
+using World = TwoEffects;
 
 TEST(Failures, NothingIsExcludedFromCompleteEvidence) {
     World w;

@@ -11,14 +11,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Two effects of which the first is the cause, and a parameter. Bins 16 to 35 of 48 can be taken from any.
-struct World {
-    World() {
-        synthetic.add_effect(evidence, "adhesion", synthetic.pattern(1));
-        synthetic.add_effect(evidence, "friction", synthetic.pattern(1));
-        synthetic.add_nuisance(evidence, "modulus", synthetic.pattern(0.5), 1);
-        evidence.observed += 4 * evidence.library.effects[0].linear;
-    }
+/// Bins 16 to 35 of 48 can be taken from any.
+struct World : TwoEffects {
     Signature& effect(int k) { return evidence.library.effects[static_cast<std::size_t>(k)]; }
     static void take_bins(Eigen::VectorXd& values) { values.segment(16, 20).setConstant(not_available); }
     GapStatistics statistics() const {
@@ -26,8 +20,6 @@ struct World {
         const GapSpace space(data.noise, static_cast<int>(evidence.baseline.rows()), data.cells, data.free);
         return gap_statistics(space, data, data.gap);
     }
-    SyntheticWorld synthetic{6, 3};
-    Evidence evidence = synthetic.evidence(1, 16);
 };
 
 TEST(MissingBins, OfACandidateLeaveTheEvidenceForAllOthersAsItIs) {

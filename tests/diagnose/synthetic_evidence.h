@@ -79,4 +79,16 @@ private:
     Random random_;
 };
 
+/// Two effects of which the first is the cause, and a parameter.
+struct TwoEffects {
+    TwoEffects() {
+        synthetic.add_effect(evidence, "adhesion", synthetic.pattern(1));
+        synthetic.add_effect(evidence, "friction", synthetic.pattern(1));
+        synthetic.add_nuisance(evidence, "modulus", synthetic.pattern(0.5), 1);
+        evidence.observed += 4 * evidence.library.effects[0].linear;
+    }
+    SyntheticWorld synthetic{6, 3};
+    Evidence evidence = synthetic.evidence(1, 16);
+};
+
 }  // namespace mcdem
