@@ -46,8 +46,9 @@ TEST(StableStep, IsThatOfAnOscillatorWithADelayedForce) {
     for (std::size_t i = 0; i < found.size(); ++i) {
         const double truth = longest_stable(in[2 * i], in[2 * i + 1]);
         EXPECT_LT(found[i], 1.01 * truth) << "gain " << in[2 * i] << ", damping " << in[2 * i + 1];
-        if (in[2 * i] > 0 && truth < 0.9)
+        if (in[2 * i] > 0 && truth < 0.9) {
             EXPECT_GT(found[i], 0.85 * truth) << "gain " << in[2 * i] << ", damping " << in[2 * i + 1];
+        }
     }
 }
 
@@ -163,7 +164,9 @@ TEST(StableStep, OfAGrainBetweenPlatesFollowsFromItsGain) {
                                 six ? "six" : "two", mode.gain, mode.damping / (mass * frequency),
                                 expected * frequency, frequency / result[0].step_rate);
                 EXPECT_LT(1 / result[0].step_rate, 1.02 * expected) << where;
-                if (mode.gain > 0) EXPECT_GT(1 / result[0].step_rate, 0.78 * expected) << where;
+                if (mode.gain > 0) {
+                    EXPECT_GT(1 / result[0].step_rate, 0.78 * expected) << where;
+                }
             }
 }
 

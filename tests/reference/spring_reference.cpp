@@ -9,9 +9,6 @@
 namespace reference {
 namespace {
 
-/// Component of `v` perpendicular to the unit vector e.
-Vec3 across(const Vec3& v, const Vec3& e) { return v - v.dot(e) * e; }
-
 /// `v`, perpendicular to the unit vector `before`, after the smallest rotation that takes `before` to `now`,
 /// and a rotation by `twist` about `now`.
 Vec3 turned(const Vec3& v, const Vec3& before, const Vec3& now, double twist) {

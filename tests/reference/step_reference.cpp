@@ -15,9 +15,6 @@ namespace {
 
 using std::numbers::pi;
 
-/// Component of `v` perpendicular to the unit vector e.
-Vec3 across(const Vec3& v, const Vec3& e) { return v - v.dot(e) * e; }
-
 /// The periodic image of `point` that is closest to `to`.
 Vec3 nearest_image(const mcdem::Box& box, const Vec3& point, const Vec3& to) {
     if (box.shape != mcdem::ContainerShape::periodic) return point;

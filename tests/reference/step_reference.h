@@ -13,6 +13,9 @@ namespace reference {
 
 using mcdem::Vec3;
 
+/// Component of `v` perpendicular to the unit vector e.
+inline Vec3 across(const Vec3& v, const Vec3& e) { return v - v.dot(e) * e; }
+
 /// State of a contact that a grain stores between steps.
 struct Memory {
     double predicted = 0;          ///< surface displacement extrapolated to the next step [m]
