@@ -29,6 +29,11 @@ struct KernelBuild {
         const auto wide = static_cast<std::size_t>(lanes), all = static_cast<std::size_t>(slots);
         return place / (wide * all) * wide + place % wide;
     }
+    /// Place of a grain's slot in such a field, or in row `row` of a field with `rows` numbers per slot.
+    std::size_t place_of_slot(std::size_t grain, std::size_t slot, int row = 0, int rows = 1) const {
+        const auto wide = static_cast<std::size_t>(lanes), all = static_cast<std::size_t>(slots);
+        return ((grain / wide * rows + row) * all + slot) * wide + grain % wide;
+    }
 };
 
 /// The build for `device`: vectors of grains on a CPU, one work-item per slot on a GPU. The environment

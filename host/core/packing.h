@@ -1,5 +1,5 @@
-// A packing: positions and diameters of grains, and their initial motion. The index in the vectors is the
-// user's grain number.
+// A packing: positions and diameters of grains, their initial motion and friction. The index in the vectors
+// is the user's grain number.
 #pragma once
 #include <array>
 #include <string>
@@ -10,6 +10,13 @@
 
 namespace mcdem::inline core {
 
+/// Tangential force of a contact in the state from which a packing was taken.
+struct TangentialForce {
+    int grain = 0;
+    int partner = 0;            ///< a grain, or a wall (core/recording.h)
+    Vec3 force = Vec3::Zero();  ///< on `grain` [N]
+};
+
 struct Packing {
     std::vector<Vec3> position;                   ///< centres [m]
     std::vector<double> diameter;                 ///< [m]
@@ -17,6 +24,7 @@ struct Packing {
     std::vector<std::string> species_names = {};  ///< names or numbers, as in the file
     std::vector<Vec3> velocity = {};              ///< half a step before the start [m/s]; empty: at rest
     std::vector<Vec3> angular_velocity = {};      ///< the same [1/s]
+    std::vector<TangentialForce> tangential = {};  ///< friction springs start with it; empty: they start anew
     std::size_t size() const { return position.size(); }
     std::size_t species_of(std::size_t grain) const {
         return species.empty() ? 0 : static_cast<std::size_t>(species[grain]);

@@ -20,6 +20,16 @@ StatedBox box_of(const Recording& recording, const Scan& scan, const std::filesy
     return stated;
 }
 
+/// The parts of contact forces across the line from the grain's centre to the contact.
+std::vector<TangentialForce> tangential_forces(const Scan& scan) {
+    std::vector<TangentialForce> all;
+    for (const Contact& contact : scan.contacts) {
+        const Vec3 normal = (contact.point - scan.position[contact.grain]).normalized();
+        all.push_back({contact.grain, contact.partner, contact.force - contact.force.dot(normal) * normal});
+    }
+    return all;
+}
+
 }  // namespace
 
 FilePacking recorded_packing(const std::filesystem::path& file, std::optional<long> frame) {
@@ -34,10 +44,16 @@ FilePacking recorded_packing(const std::filesystem::path& file, std::optional<lo
     for (std::size_t s = 0; s < recording.scans.size(); ++s) {
         if (frame && recording.scans[s].frame != *frame) continue;
         Scan scan = reader.read_scan(0, s);
-        if (!scan.position.empty())
-            return {
-                {std::move(scan.position), recording.diameter, recording.species, recording.species_names},
-                box_of(recording, scan, file)};
+        if (!scan.position.empty()) {
+            FilePacking packing;
+            packing.tangential = tangential_forces(scan);
+            packing.box = box_of(recording, scan, file);
+            packing.position = std::move(scan.position);
+            packing.diameter = recording.diameter;
+            packing.species = recording.species;
+            packing.species_names = recording.species_names;
+            return packing;
+        }
         if (frame) break;
     }
     throw InputError(fmt::format("{}: must hold positions of {}, got none: run with output.positions = true",

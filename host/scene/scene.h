@@ -130,6 +130,12 @@ struct Replica {
     Effects effects;
 };
 
+/// Fraction of the friction force from a Mindlin spring; the rest is saturated friction.
+inline double mindlin_share(const Replica& replica) {
+    const double other = replica.effects.friction_history;
+    return replica.contact.friction_law == FrictionLaw::saturated ? other : 1 - other;
+}
+
 struct Output {
     bool positions = true;          ///< record positions at scans
     bool contacts = true;           ///< record contacts at scans

@@ -149,11 +149,6 @@ double list_reach(const Replica& replica, const Packing& packing) {
                       *std::ranges::max_element(packing.diameter));
 }
 
-double mindlin_share(const Replica& replica) {
-    const double other = replica.effects.friction_history;
-    return replica.contact.friction_law == FrictionLaw::saturated ? other : 1 - other;
-}
-
 double time_step(const Replica& replica, const Packing& packing) {
     const auto excess = excess_compliance(replica, packing.size());
     const auto all = materials(replica);

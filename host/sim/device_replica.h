@@ -30,9 +30,6 @@ double mean_radius(const Packing& packing);  ///< [m]
 /// Largest distance between centres in a neighbour list [m].
 double list_reach(const Replica& replica, const Packing& packing);
 
-/// Fraction of the friction force from a Mindlin spring; the rest is saturated friction.
-double mindlin_share(const Replica& replica);
-
 /// Position of a replica in the device's arrays.
 struct Place {
     int first_grain = 0;

@@ -25,7 +25,6 @@ constexpr double plate_share = 0.2;
 /// In a cell, by which two grains at the reach of the list are displaced relative to each other: the same
 /// fractions of `cell_share` of the margin, twice. The grains' own motion may use the rest.
 constexpr double margin_of_walls(const Replica& replica) { return is_cell(replica.box) ? 2 * cell_share : 1; }
-constexpr int max_interval_steps = 60;
 
 template <class DeviceReplica>
 std::vector<DeviceReplica> device_replicas(const std::vector<Replica>& replicas,
@@ -111,6 +110,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
     }
     upload_materials();
     upload_packings(packings);
+    start_springs(packings);
 }
 
 void Engine::upload_materials() {

@@ -33,6 +33,9 @@ inline StepInterval in_part(StepInterval interval, double step_part) {
     return interval;
 }
 
+/// Maximum number of steps of an interval.
+inline constexpr int max_interval_steps = 60;
+
 /// Result of an interval.
 struct IntervalResult {
     int steps = 0;              ///< steps made; fewer than requested if the neighbour list had to be rebuilt
@@ -154,6 +157,8 @@ private:
     Part part(const std::vector<char>& wanted) const;
     void upload_materials();
     void upload_packings(const std::vector<Packing>& packings);
+    void start_springs(const std::vector<Packing>& packings);
+    void write_springs(int replica, const std::vector<TangentialForce>& tangential);
     double speed_of_walls(int replica, const StepInterval& interval) const;
     void choose(const std::vector<char>& active);
     void upload_intervals(const std::vector<StepInterval>& intervals);

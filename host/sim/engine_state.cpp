@@ -1,4 +1,4 @@
-// Reading the state of replicas between intervals, and checkpoints.
+// Reading and writing the state of replicas between intervals, and checkpoints.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -9,6 +9,7 @@
 #include "core/errors.h"
 #include "core/in_parallel.h"
 #include "scene/plate_face.h"
+#include "sim/batch_limits.h"
 #include "sim/device_replica.h"
 #include "sim/engine.h"
 
@@ -106,6 +107,7 @@ void Engine::write_reals(Field<Quantity>& field, std::size_t first, const std::v
 template std::vector<double> Engine::read_reals(const Field<CellMoments>&, std::size_t, std::size_t) const;
 template void Engine::write_reals(Field<Motion>&, std::size_t, const std::vector<double>&);
 template void Engine::write_reals(Field<Tracks>&, std::size_t, const std::vector<double>&);
+template void Engine::write_reals(Field<ContactMemory>&, std::size_t, const std::vector<double>&);
 
 Readings Engine::begin_reading(int first_replica, int last_replica) const {
     const auto first = static_cast<std::size_t>(layout_.first_grain[first_replica]);
@@ -241,6 +243,50 @@ void Engine::write_motion(int replica, const GrainMotion& motion) {
     };
     put(motion.position, 0), put(motion.velocity, 4), put(motion.angular_velocity, 8);
     write_reals(fields_.motion.copies[0], first, values);
+}
+
+/// Starts the friction springs of loaded packings with the tangential forces of their past. Surfaces settle
+/// first, in steps so short that no grain moves: without their displacements contacts are weaker, or open,
+/// and Coulomb's limit would cut the springs.
+void Engine::start_springs(const std::vector<Packing>& packings) {
+    constexpr int settling = 3;
+    constexpr double no_motion = 1e-6;
+    std::vector<StepInterval> rest(replicas_.size());
+    for (std::size_t r = 0; r < rest.size(); ++r)
+        if (mindlin_share(replicas_[r]) > 0 && !packings[r].tangential.empty())
+            rest[r] = in_part({max_interval_steps, replicas_[r].plate.start}, no_motion);
+    const auto moves = [](const StepInterval& interval) { return interval.steps > 0; };
+    if (std::ranges::none_of(rest, moves)) return;
+    for (int interval = 0; interval < settling; ++interval) advance(rest);
+    for (int r = 0; r < layout_.replicas(); ++r)
+        if (moves(rest[r])) write_springs(r, packings[r].tangential);
+}
+
+void Engine::write_springs(int replica, const std::vector<TangentialForce>& tangential) {
+    std::map<std::pair<int, int>, Vec3> springs;  // on the first grain, by partner
+    for (const auto& [grain, partner, force] : tangential) {
+        springs[{grain, partner}] = force / mindlin_share(replicas_[replica]);
+        if (!is_wall(partner)) springs[{partner, grain}] = -springs[{grain, partner}];
+    }
+    const auto& order = layout_.order[replica];
+    const int first = layout_.first_grain[replica];
+    const auto slots = static_cast<std::size_t>(build_.slots),
+               padded = static_cast<std::size_t>(layout_.first_grain[replica + 1] - first);
+    const int rows = memory_rows(field_needs(replicas_)).count;
+    std::vector<int> partners(padded * slots);
+    fields_.partner.read(partners.data(), first * slots * sizeof(int), partners.size() * sizeof(int));
+    auto memory = read_reals(fields_.memory_of_contacts, first * slots * rows, padded * slots * rows);
+    for (std::size_t k = 0; k < order.size(); ++k)
+        for (std::size_t slot = 0; slot < slots; ++slot) {
+            const int device = partners[build_.place_of_slot(k, slot)];
+            if (device == NO_PARTNER) continue;
+            const int partner = device < 0 ? wall_partner(static_cast<Wall>(WALL_PARTNER(0) - device))
+                                           : order[device - first];
+            const auto spring = springs.find({order[k], partner});
+            for (int axis = 0; axis < 3 && spring != springs.end(); ++axis)
+                memory[build_.place_of_slot(k, slot, axis, rows)] = spring->second[axis];
+        }
+    write_reals(fields_.memory_of_contacts, first * slots * rows, memory);
 }
 
 std::map<std::string, std::vector<std::byte>> Engine::save() {

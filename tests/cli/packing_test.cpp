@@ -40,10 +40,33 @@ TEST_F(PackingTest, OfAnExperimentAndOfARunAreTheSame) {
               read_run(path("a")).recordings.front().diameter);
 }
 
-// A loaded frame has lost the history of its contacts; a packing at rest has none worth a word.
-TEST_F(PackingTest, OfALoadedFrameStartsWithoutItsHistory) {
-    expect_done(mcdem(
-        run_words("a", {"--set", "protocol.scan_at_start=true", "--set", "contact.model=independent"})));
+// A loaded frame is continued with its friction: after it has relaxed with the plate at rest, the force is
+// the frame's. Without springs it falls by 5 %.
+TEST_F(PackingTest, OfALoadedFrameKeepsItsFriction) {
+    const std::vector<std::string> more{
+        "--set", "protocol.scan_at_start=true", "--set", "protocol.stop_at_scans=true",
+        "--set", "contact.model=mc_dem",        "--set", "grains.friction=0.3",
+        "--set", "protocol.settle_time=1",      "--set", "protocol.relax_time=1"};
+    expect_done(mcdem(run_words("a", more)));
+    const Scan loaded = read_run(path("a")).recordings.front().scans.at(3);
+    const std::vector<std::string> frame{"--set", "packing.file=a/run.h5",
+                                         "--set", "packing.frame=3",
+                                         "--set", fmt::format("plate.start={}", loaded.plate_z)};
+    auto again = more, validated = frame;
+    again.insert(again.end(), frame.begin(), frame.end());
+    expect_done(mcdem(run_words("b", again)));
+    const double force = read_run(path("b")).recordings.front().scans.at(0).top_force();
+    EXPECT_NEAR(force / loaded.top_force(), 1, 2e-3);
+    validated.insert(validated.begin(), {"validate", "small.toml"});
+    EXPECT_THAT(mcdem(validated).out, ContainsRegex("run.h5: friction springs start with the tangential "
+                                                    "forces of its [0-9]+ contacts"));
+}
+
+// Without recorded forces a loaded frame has lost the history of its contacts; a packing at rest has none
+// worth a word.
+TEST_F(PackingTest, OfALoadedFrameWithoutForcesStartsWithoutItsHistory) {
+    expect_done(mcdem(run_words("a", {"--set", "protocol.scan_at_start=true", "--set",
+                                      "output.contacts=false", "--set", "contact.model=independent"})));
     const std::string said =
         "% of a diameter, but the history of their contacts is not in the file (friction springs)";
     const std::vector<std::string> loaded{"packing.file=a/run.h5", "packing.frame=4", "plate.start=0.08"};

@@ -32,10 +32,9 @@ Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Ve
     for (const Contact& c : contacts) {
         const auto grain = static_cast<std::size_t>(c.grain);
         const auto slot = static_cast<std::size_t>(used[grain]++);
-        partner[slot_place(kernels, grain, slot)] = c.partner;
+        partner[kernels.place_of_slot(grain, slot)] = c.partner;
         for (int axis = 0; axis < 3; ++axis)
-            force[force_place(kernels, grain, static_cast<std::size_t>(axis), slot)] =
-                static_cast<float>(c.force[axis]);
+            force[kernels.place_of_slot(grain, slot, axis, 3)] = static_cast<float>(c.force[axis]);
     }
     const mcdem::Portion portion{0, 0};
     const int step = 0;

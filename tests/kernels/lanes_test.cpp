@@ -96,7 +96,7 @@ TEST_P(Lanes, SlotsAreStoredAsVectorsOfGrains) {
     const auto found = by_lanes("result = load_slot((global const real*)field, FIRST_SLOT(first % 16), 6);",
                                 x, index, kernels);
     for (std::size_t grain = 0; grain < 16; ++grain)
-        EXPECT_EQ(found[grain], slot_place(kernels, grain, kernels.lanes > 1 ? 6 : 0));
+        EXPECT_EQ(found[grain], kernels.place_of_slot(grain, kernels.lanes > 1 ? 6 : 0));
 }
 
 TEST(KernelBuild, PlacesOfSlotsBelongToTheirGrains) {
@@ -105,7 +105,7 @@ TEST(KernelBuild, PlacesOfSlotsBelongToTheirGrains) {
         std::vector<bool> used(64 * 32, false);
         for (std::size_t grain = 0; grain < 64; ++grain)
             for (std::size_t slot = 0; slot < 32; ++slot) {
-                const std::size_t place = slot_place(kernels, grain, slot);
+                const std::size_t place = kernels.place_of_slot(grain, slot);
                 ASSERT_LT(place, used.size());
                 EXPECT_FALSE(used[place]);
                 used[place] = true;

@@ -17,10 +17,10 @@ struct Grains {
             for (int k = 0; k < 8; ++k) energy.push_back(static_cast<float>(uniform(0, 1)));
             for (int k = 0; k < 12; ++k) track.push_back(static_cast<float>(uniform(0, 1)));
             for (int slot = 0; slot < slots; ++slot) {
-                const std::size_t place = slot_place(kernels, i, slot);
+                const std::size_t place = kernels.place_of_slot(i, slot);
                 partner[place] = slot < 6 ? WALL_PARTNER(slot) : slot < 9 ? i / 2 : NO_PARTNER;
                 for (std::size_t axis = 0; axis < 3; ++axis)
-                    force[force_place(kernels, i, axis, slot)] = static_cast<float>(uniform(-1, 1));
+                    force[kernels.place_of_slot(i, slot, axis, 3)] = static_cast<float>(uniform(-1, 1));
             }
         }
     }
@@ -84,7 +84,7 @@ TEST(Reduce, SumsAndMaximaAreThoseOfAllGrains) {
             for (std::size_t k = 0; k < 4; ++k) works[k] += grains.track[12 * i + 8 + k];
             for (std::size_t wall = 0; wall < 6; ++wall)
                 for (std::size_t axis = 0; axis < 3; ++axis)
-                    walls[3 * wall + axis] -= grains.force[force_place(kernels, i, axis, wall)];
+                    walls[3 * wall + axis] -= grains.force[kernels.place_of_slot(i, wall, axis, 3)];
         }
         EXPECT_NEAR(report.kinetic_energy, kinetic, 1e-5 * kinetic);
         EXPECT_NEAR(report.elastic_energy, elastic, 1e-5 * elastic);

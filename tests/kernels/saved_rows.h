@@ -42,7 +42,7 @@ public:
     std::vector<int> row(int replica, int grain) const {
         std::vector<int> entries;
         for (int c = 0; c < build_.slots; ++c)
-            entries.push_back(partner_[slot_place(build_, index(replica, grain), c)]);
+            entries.push_back(partner_[build_.place_of_slot(index(replica, grain), c)]);
         return entries;
     }
     /// Index of a grain in the device's arrays.
@@ -64,12 +64,12 @@ public:
         const auto entries = row(replica, grain);
         const std::size_t rows = values.size() / partner_.size();
         const std::size_t lane = index(replica, grain) % build_.lanes;
-        const std::size_t block = slot_place(build_, index(replica, grain) - lane, 0);
+        const std::size_t block = build_.place_of_slot(index(replica, grain) - lane, 0);
         for (int c = 0; c < build_.slots; ++c)
             if (entries[c] != NO_PARTNER)
                 found[user_partner(replica, entries[c])] =
                     values[rows * block + stored_row * build_.slots * build_.lanes +
-                           slot_place(build_, lane, c)];
+                           build_.place_of_slot(lane, c)];
         return found;
     }
     std::vector<int> partner_slots() const { return saved_values<int>(saved_, "partner_slot"); }

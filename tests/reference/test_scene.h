@@ -57,18 +57,6 @@ inline std::vector<KernelBuild> all_ways(const KernelBuild& build) {
     return {build, other_way(build)};
 }
 
-/// Place of a slot in fields with one number per slot (SLOT_PLACE in kernels/lanes.h).
-inline std::size_t slot_place(const KernelBuild& build, std::size_t grain, std::size_t slot) {
-    const auto wide = static_cast<std::size_t>(build.lanes), all = static_cast<std::size_t>(build.slots);
-    return grain / wide * wide * all + slot * wide + grain % wide;
-}
-/// The place of the force on a grain along an axis in a slot.
-inline std::size_t force_place(const KernelBuild& build, std::size_t grain, std::size_t axis,
-                               std::size_t slot) {
-    const auto wide = static_cast<std::size_t>(build.lanes), all = static_cast<std::size_t>(build.slots);
-    return (grain / wide * 3 + axis) * wide * all + slot * wide + grain % wide;
-}
-
 #define SKIP_WITHOUT_OTHER_WAY() \
     if (!has_other_way()) GTEST_SKIP() << "GPUs do not use the layout of CPUs"
 

@@ -46,6 +46,9 @@ void print_packings(const Scene& scene) {
         print_out("{}: {} grains, Z = {:.2f}, deepest overlap {:.3g} mm ({:.2g} % of a diameter)\n",
                   file->path, packing.size(), state.coordination_number, 1e3 * state.deepest_overlap,
                   100 * state.relative_overlap);
+        if (!packing.tangential.empty() && mindlin_share(replica) > 0)
+            print_out("{}: friction springs start with the tangential forces of its {} contacts\n",
+                      file->path, packing.tangential.size());
     }
 }
 

@@ -19,12 +19,11 @@ namespace {
 /// positions cause less: 0.028 in the measured packing of hydrogel grains at rest.
 constexpr double loaded = 0.03;
 
-/// What the contacts of a replica remember.
-std::vector<std::string> memory_of_contacts(const Replica& replica) {
+/// What the contacts of a replica remember and the packing does not say.
+std::vector<std::string> missing_memory(const Replica& replica, const Packing& packing) {
     const Effects& effects = replica.effects;
     std::vector<std::string> all;
-    if (replica.contact.friction_law != FrictionLaw::saturated || effects.friction_history > 0)
-        all.emplace_back("friction springs");
+    if (mindlin_share(replica) > 0 && packing.tangential.empty()) all.emplace_back("friction springs");
     if (effects.plasticity > 0) all.emplace_back("plasticity");
     if (effects.viscoelasticity > 0) all.emplace_back("viscoelasticity");
     if (effects.rolling_resistance > 0) all.emplace_back("rolling resistance");
@@ -46,14 +45,14 @@ ReadFile read_file_of(const PackingFile& file, const Replica& replica) {
 }
 
 /// A loaded packing whose contacts begin without a history; empty if there is nothing to say.
-std::string lost_history(const Replica& replica, double overlap, const std::string& file) {
-    const std::vector<std::string> memory = memory_of_contacts(replica);
-    if (memory.empty() || !(overlap > loaded)) return "";
+std::string lost_history(const Replica& replica, const ReadFile& read, const std::string& file) {
+    const std::vector<std::string> memory = missing_memory(replica, read.packing);
+    if (memory.empty() || !(read.overlap > loaded)) return "";
     return fmt::format(
         "{}: grains overlap by up to {:.2g} % of a diameter, but the history of their contacts is not in the "
         "file "
         "({}): it starts anew, and forces differ from those of the packing's own past",
-        file, 100 * overlap, fmt::join(memory, ", "));
+        file, 100 * read.overlap, fmt::join(memory, ", "));
 }
 
 /// Generated grains so unlike that the largest may have more neighbours than there can be slots; empty if
@@ -83,10 +82,10 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
         if (!file) continue;
         const auto [place, is_new] = files.try_emplace({file->path, file->step});
         if (is_new) place->second = read_file_of(*file, replica);
-        const auto& [packing, overlap] = place->second;
+        const FilePacking& packing = place->second.packing;
         for (const std::string& warning : compare_box(packing, packing.box, replica.box).warnings)
             add(warning);
-        add(lost_history(replica, overlap, file->path));
+        add(lost_history(replica, place->second, file->path));
     }
     return warnings;
 }
