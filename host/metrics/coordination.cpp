@@ -162,7 +162,7 @@ CoordinationError coordination_error(const Levels& simulated, const Replicas& si
         return finish(rms_over_levels(at_reference(by_replica(simulated, recorded_coordination), matches),
                                       reference, jackknife.omissions()));
     const Objective objective(coordination, reference, matches);
-    const double tau = minimising_tau(objective, coordination.candidate_thresholds(400));
+    const double tau = minimising_tau(objective, coordination.candidate_thresholds(2000));
     const auto levels = objective(tau, jackknife.omissions());
     finish(levels);
     if (levels.levels_used > 0) error.tau = {tau, error_of_tau(objective, tau, jackknife), error.errZ.count};

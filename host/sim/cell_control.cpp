@@ -191,7 +191,8 @@ bool CellControl::is_possible(const State& state) {
     for (std::size_t k = 0; k < state.begin.size(); ++k)
         possible &= std::isfinite(state.begin[k]) && (k >= 3 || state.begin[k] < 1);
     for (std::size_t axis = 0; axis < state.direction.size(); ++axis)
-        possible &= std::isfinite(state.direction[axis].strain) &&
+        possible &= ForceControl::is_possible(state.direction[axis].control) &&
+                    std::isfinite(state.direction[axis].strain) &&
                     (is_shear(axis) || state.direction[axis].strain < 1);
     return possible;
 }

@@ -22,6 +22,10 @@ constexpr double stiffness_margin = 1.5;
 /// force within `approach` times that. The two are separated enough that neither overshoots at any of these
 /// stiffnesses.
 constexpr double response = 1.5, approach = 14;
+/// A velocity that changes its sign and grows, interval after interval, shows that the packing is stiffer
+/// than expected, as compressed grains are that yielded and are unloaded. In each such interval the caution
+/// grows by the first factor; otherwise it decreases by the second one. It takes effect after five.
+constexpr double more_caution = 1.4, less_caution = 0.85;
 /// Stiffness of a fast cell over that of its layers, at most: it is strained in all directions at once,
 /// strongly compressed, with displaced surfaces.
 constexpr double cell_margin = 5;
@@ -120,8 +124,13 @@ void ForceControl::steer(State& state, const Target& target, double duration, do
     }
     const double follow = response * std::max(duration, response_time(state, target));
     const double lacking = left / (approach * follow) - state.rate;
-    const double change = std::min(0.5, duration / follow) * lacking / stiffness(state, target);
-    state.velocity = std::clamp(state.velocity - change, -max_speed, max_speed);
+    const double stiff = std::max(1.0, state.caution) * stiffness(state, target);
+    const double change = std::min(0.5, duration / follow) * lacking / stiff;
+    const double last = state.velocity;
+    state.velocity = std::clamp(last - change, -max_speed, max_speed);
+    const bool overshoots = state.velocity * last < 0 && std::abs(state.velocity) >= std::abs(last);
+    state.caution =
+        std::clamp(state.caution * (overshoots ? more_caution : less_caution), least_caution, most_caution);
 }
 
 }  // namespace mcdem::sim

@@ -13,11 +13,14 @@ namespace mcdem::inline sim {
 
 class ForceControl {
 public:
+    static constexpr double least_caution = 0.25, most_caution = 1e3;
     /// Plain values, stored in checkpoints.
     struct State {
         double force = 0;     ///< at the end of the last interval [N]
         double rate = 0;      ///< rate of the force in the last interval [N/s]
         double velocity = 0;  ///< of the plate from now on, upward [m/s]
+        /// Above 1, the stiffness of the packing over that which the controller would expect.
+        double caution = least_caution;
     };
 
     /// Made from a force alone, differences are relative to that force.
@@ -47,6 +50,10 @@ public:
     double approach_time(const State& state, const Target& target) const;
     /// Whether the force is within half of the tolerance.
     static bool reached(const State& state, const Target& target);
+    /// Whether the state can come from a valid checkpoint.
+    static bool is_possible(const State& state) {
+        return state.caution >= least_caution && state.caution <= most_caution;
+    }
 
 private:
     ForceControl() = default;

@@ -393,8 +393,8 @@ bool ProtocolRunner::is_possible(const ProtocolState& state) const {
     return state.step >= 0 && state.stage_step >= 0 && stage >= 0 &&
            stage <= static_cast<int>(Stage::finished) && state.cycle >= 0 && (phase == 0 || phase == 1) &&
            state.level >= 0 && state.level <= scans && state.frame >= 0 && state.settled_intervals >= 0 &&
-           state.reached_intervals >= 0 && CellControl::is_possible(state.cell) &&
-           !std::isnan(state.free_above);
+           state.reached_intervals >= 0 && ForceControl::is_possible(state.control) &&
+           CellControl::is_possible(state.cell) && !std::isnan(state.free_above);
 }
 
 }  // namespace mcdem::sim

@@ -42,7 +42,7 @@ struct ProtocolState {
     CellControl::State cell;
 };
 static_assert(std::is_trivially_copyable_v<ProtocolState> &&
-                  sizeof(ProtocolState) == 8 * (2 + 4 + 8 + 3 + 7 + 30),
+                  sizeof(ProtocolState) == 8 * (2 + 4 + 9 + 3 + 7 + 36),
               "no padding: equal states have equal bytes in checkpoints");
 
 class ProtocolRunner {

@@ -143,7 +143,9 @@ TEST(OtherProtocols, GetAPowerInADiagnosis) {
                 EXPECT_TRUE(*step.power >= 0 && *step.power <= 1) << *step.power;
                 ++powers;
             }
-    if (diagnosis.verdict == Verdict::group) EXPECT_EQ(powers, 2);
+    if (diagnosis.verdict == Verdict::group) {
+        EXPECT_EQ(powers, 2);
+    }
     EXPECT_TRUE(recommends_motion(diagnosis));
     EXPECT_TRUE(diagnosis.refinements.empty());
 }

@@ -46,7 +46,8 @@ constexpr double set[] = {100, 500, 150, 150, 150, 150};
 /// Largest overshoot of a stress in any interval, and largest deviation from it while strains change,
 /// relative (of a shear stress, a fifth of it, to the pressure). Packings without friction rearrange
 /// suddenly, in other places on other devices: seen were 8 and 10.4 % off, and shear stresses 0.5 and 0.76 %
-/// beyond.
+/// beyond. Plastic grains at 500 Pa are ten times as stiff as the controller expects; it passes the stress by
+/// 0.15 % until it has noticed.
 struct Kind {
     const char* name;
     std::vector<std::string> overrides;
@@ -72,7 +73,7 @@ const Kind kinds[] = {
      0.01},
     {"plastic",
      {"effects.plasticity=0.3", "grains.friction=0.3", "contact.friction_law=mindlin"},
-     1e-3,
+     3e-3,
      0.01},
 };
 
