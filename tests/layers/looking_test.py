@@ -8,6 +8,7 @@ import sys
 from storage_test import RUN, expect, mcdem, run_tests, whole_run
 
 REASONS = {"EIO": "Input/output error", "ESTALE": "Stale file handle", "EACCES": "Permission denied"}
+OF_HDF5 = "can't retrieve stat info for file"  # HDF5 1.10 does not pass the reason of the system on
 # Of a message that takes an error for an answer.
 MISTAKEN = ("no such", "nothing there", "not there", "holds no", "must hold", "is not an experiment", "remove it", "mcdem: :")
 FROM_RUN = ["experiment", "from-run", "out", "--replica", "mc_dem", "--out", "lab"]
@@ -40,7 +41,7 @@ def check_looks(place, words, outputs=()):
         done = mcdem(place, *words, fault=fault, fault_at=number, fault_kinds="stat")
         told, seen = done.stderr + done.stdout, (words, path, fault, done)
         if done.returncode != 0 or reason in told:
-            assert done.returncode in (0, 1) and reason in told, seen
+            assert done.returncode in (0, 1) and (reason in told or OF_HDF5 in told), seen
             # Each process counts its own looks, so a command that starts Python may have failed at another path.
             assert path.rsplit("/", 1)[1] in told or "import" in words or "export" in words, seen
             assert not any(mistaken in done.stderr for mistaken in MISTAKEN), seen
@@ -81,7 +82,8 @@ def tables_are_looked_for_by_python(place):
 
 
 def names_in(folder):
-    return {path.name for path in folder.iterdir()} if folder.exists() else set()
+    """Without temporary folders: one is left where its removal is what fails."""
+    return {path.name for path in folder.iterdir() if not path.name.endswith(".tmp")} if folder.exists() else set()
 
 
 def check_publishing(place, words, out, whole, before=()):
@@ -104,7 +106,7 @@ def check_publishing(place, words, out, whole, before=()):
                 shutil.rmtree(abandoned)
             prepare()
             done = mcdem(place, *words, fault=fault, fault_at=number, fault_kinds=kinds)
-            left = {name for name in names_in(place / out) if not name.endswith(".tmp")} - set(before)
+            left = names_in(place / out) - set(before)
             seen = (words, steps[number - 1], fault, done.returncode, done.stderr, left)
             if fault == "EIO":
                 assert left == (whole if done.returncode == 0 else set()), seen
