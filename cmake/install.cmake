@@ -1,22 +1,20 @@
-# Rules for `cmake --install`, in three components: the program with its manual and completions; the engine as a library
+# Rules for `cmake --install`, in three components: the program with its completions; the engine as a library
 # for other programs (find_package(mcdem)); the Python module.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(TARGETS mcdem RUNTIME COMPONENT program)
 
-# The program generates its manual and completions.
+# The program generates its completions.
 set(described ${CMAKE_BINARY_DIR}/described)
 add_custom_command(OUTPUT ${described}/done
-  COMMAND ${CMAKE_COMMAND} -E rm -rf ${described}
-  COMMAND mcdem manual --out ${described}/man
+  COMMAND ${CMAKE_COMMAND} -E make_directory ${described}
   COMMAND mcdem completion bash > ${described}/mcdem.bash
   COMMAND mcdem completion zsh > ${described}/mcdem.zsh
   COMMAND mcdem completion fish > ${described}/mcdem.fish
   COMMAND ${CMAKE_COMMAND} -E touch ${described}/done
   DEPENDS mcdem VERBATIM)
 add_custom_target(mcdem_described ALL DEPENDS ${described}/done)
-install(DIRECTORY ${described}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 set(share ${CMAKE_INSTALL_DATAROOTDIR})
 install(FILES ${described}/mcdem.bash DESTINATION ${share}/bash-completion/completions RENAME mcdem COMPONENT program)
 install(FILES ${described}/mcdem.zsh DESTINATION ${share}/zsh/vendor-completions RENAME _mcdem COMPONENT program)

@@ -66,6 +66,8 @@ public:
             remove_temporaries(options.out / folder);
     }
 
+    std::size_t count() override { return challenge_.cases.size() + library_parts().size(); }
+
     /// Cases have the first numbers, but are computed last because they need the library.
     std::vector<std::size_t> missing() override {
         std::vector<std::size_t> parts;
@@ -90,10 +92,6 @@ public:
         }
         if (is_there(options_.library.file)) return;
         part -= challenge_.cases.size();
-        if (part >= library_parts().size())
-            throw InputError(
-                fmt::format("--part: must be below {}, the number of cases and of parts of the library",
-                            challenge_.cases.size() + library_parts().size()));
         observe_trials(device, common(), library_parts()[part], store(), trial_options());
     }
 

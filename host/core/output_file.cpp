@@ -30,8 +30,6 @@ constexpr std::array marks{
     Mark{FileKind::score_page, "the score of a challenge", "# Score of the challenge\n", ""},
     Mark{FileKind::figure, "a figure of mcdem", "", "mcdem figure"},
     Mark{FileKind::figure_values, "the values of figures", "{\n \"mcdem_figures\"", ""},
-    Mark{FileKind::job_script, "a job script of mcdem", "#!/bin/bash\n# Written by mcdem", ""},
-    Mark{FileKind::manual, "a manual page of mcdem", ".TH MCDEM", ""},
 };
 constexpr std::size_t head_size = 1 << 16, largest_figure = 1 << 24;  ///< a PDF names its producer at the end
 

@@ -18,9 +18,7 @@ enum class FileKind {
     score,
     score_page,
     figure,
-    figure_values,
-    manual,
-    job_script
+    figure_values
 };
 
 /// Throws InputError unless the path is free, or holds an empty file or a file of this kind. Called before

@@ -1,5 +1,7 @@
 #include "io/checkpoint.h"
 
+#include <fmt/format.h>
+
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/look.h"
@@ -9,17 +11,18 @@ namespace mcdem::inline io {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr long checkpoint_format = 4;
+constexpr long checkpoint_format = 5;
 
 fs::path checkpoint_file(const fs::path& folder) { return folder / "checkpoint.h5"; }
 
 void write_file(NewFile& out, const Checkpoint& checkpoint) {
     h5::File file = h5::File::create(out);
-    file.keep_digests();
     file.make_group("/checkpoint/fields");
     file.set_attribute("/checkpoint", "format", std::vector<long>{checkpoint_format});
     file.set_attribute("/checkpoint", "device", checkpoint.device);
     file.set_attribute("/checkpoint", "segments", std::vector<long>{checkpoint.segments});
+    file.set_attribute("/checkpoint", "fields",
+                       std::vector<long>{static_cast<long>(checkpoint.fields.size())});
     file.write_texts("/checkpoint/scene", {checkpoint.scene_text});
     const h5::Handle byte = h5::number_type<unsigned char>();
     for (const auto& [name, bytes] : checkpoint.fields) {
@@ -29,9 +32,8 @@ void write_file(NewFile& out, const Checkpoint& checkpoint) {
         h5::Dataset table =
             file.create_rows("/checkpoint/fields/" + name, byte, {}, h5::Storage::plain, bytes.size());
         table.append(byte, bytes.data(), bytes.size());
-        file.finish(table);
+        table.close();
     }
-    file.write_digests();
     file.close();
 }
 
@@ -53,10 +55,10 @@ Checkpoint read_file(const fs::path& path) {
         bytes.resize(table.rows());
         table.read(h5::number_type<unsigned char>(), bytes.data(), 0, bytes.size());
     }
-    // Every table that was read has been compared with its digest; the scene is one more.
-    if (file.digests().size() != checkpoint.fields.size() + 1)
-        throw InputError(path.string() +
-                         ": must have one digest for each of its tables; the file is damaged");
+    const long fields = file.integer_attribute("/checkpoint", "fields");
+    if (fields != static_cast<long>(checkpoint.fields.size()))
+        throw InputError(fmt::format("{}: must have {} fields, got {}; the file is damaged", path.string(),
+                                     fields, checkpoint.fields.size()));
     return checkpoint;
 }
 
@@ -79,8 +81,6 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& folder) {
                                             "in another folder"});
     }
 }
-
-void expect_whole_checkpoint(const fs::path& file) { read_file(file); }
 
 bool has_checkpoint(const fs::path& folder) { return is_there(checkpoint_file(folder)); }
 

@@ -1,4 +1,4 @@
-// Checkpoints: named byte arrays with digests; only the writer knows their meaning.
+// Checkpoints: named byte arrays; only the writer knows their meaning.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -21,9 +21,6 @@ void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& che
 
 /// The checkpoint; none if none was written. Throws InputError if it is damaged.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& folder);
-
-/// Throws InputError if the file is not a checkpoint or one of its digests is wrong.
-void expect_whole_checkpoint(const std::filesystem::path& file);
 
 bool has_checkpoint(const std::filesystem::path& folder);
 

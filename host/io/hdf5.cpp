@@ -14,7 +14,7 @@ constexpr hsize_t chunk_bytes = 32 * 1024;
 // memory is allocated for it.
 constexpr double max_bytes_per_byte = 1100;
 constexpr double small_table = 1 << 20;
-constexpr const char* digests_object = "/digests";
+constexpr hsize_t bytes_at_once = 1 << 20;  ///< of a table that is only checked
 constexpr const char* elsewhere =
     ": lies outside this file: mcdem never writes external links; use a file that contains all its data";
 
@@ -167,12 +167,6 @@ void Dataset::write_rows(hid_t memory_type, const void* data, hsize_t rows) {
 
 void Dataset::read(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const {
     if (first + rows > this->rows()) fail("ends early");
-    if (digest_ && first != digest_->rows) digest_.reset();
-    digest_ ? read_checked(memory_type, static_cast<std::byte*>(data), rows)
-            : read_rows(memory_type, data, first, rows);
-}
-
-void Dataset::read_rows(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const {
     if (rows == 0) return;
     Extent size = extent();
     size.front() = rows;
@@ -180,6 +174,15 @@ void Dataset::read_rows(hid_t memory_type, void* data, hsize_t first, hsize_t ro
     const Handle file = select(first, rows);
     if (H5Dread(id_, memory_type, memory, file, transfer(size, memory_type), data) < 0)
         fail("cannot be read");
+}
+
+void Dataset::expect_whole() const {
+    const Handle stored = type();
+    const hsize_t all = rows(), row_bytes = std::max<hsize_t>(1, values_in(1) * H5Tget_size(stored));
+    const hsize_t some = std::max<hsize_t>(1, bytes_at_once / row_bytes);
+    std::vector<std::byte> values(std::min(all, some) * row_bytes);
+    for (hsize_t first = 0; first < all; first += some)
+        read(stored, values.data(), first, std::min(some, all - first));
 }
 
 void Dataset::expect_row(const Extent& row) const {
@@ -293,7 +296,6 @@ Dataset File::create_rows(const std::string& object, hid_t file_type, const Exte
     Dataset table(checked(H5Dcreate2(id_, object.c_str(), file_type, space, H5P_DEFAULT, layout, H5P_DEFAULT),
                           H5Dclose, *below_, where(object), "cannot be created"),
                   *below_, where(object));
-    if (keeps_digests_) table.keep_digest();
     if (storage == Storage::compressed) table.filter_chunks(chunk.front());
     return table;
 }
@@ -319,42 +321,26 @@ Dataset File::dataset(const std::string& object) const {
     for (hsize_t n : found.extent()) bytes *= static_cast<double>(n);
     if (bytes > small_table + max_bytes_per_byte * static_cast<double>(below_->size()))
         fail(where(object), "claims to hold more than the file can");
-    if (object != digests_object)
-        if (const auto digest = digests().find(object); digest != digests().end())
-            found.expect_digest(digest->second);
     return found;
 }
 
-void File::finish(Dataset& table) {
-    if (keeps_digests_) {
-        if (!digests_) digests_.emplace();
-        (*digests_)[table.where().substr(where("").size())] = table.digest();
-    }
-    table.close();
+std::vector<std::string> File::tables() const {
+    std::vector<std::string> names;
+    const auto keep_table = [](hid_t, const char* name, const H5O_info_t* info, void* names) -> herr_t {
+        if (info->type == H5O_TYPE_DATASET)
+            static_cast<std::vector<std::string>*>(names)->push_back(std::string("/") + name);
+        return 0;
+    };
+    if (H5Ovisit2(id_, H5_INDEX_NAME, H5_ITER_NATIVE, keep_table, &names, H5O_INFO_BASIC) < 0)
+        fail(path_.string(), "cannot be listed");
+    std::ranges::sort(names);
+    return names;
 }
 
-void File::write_digests() {
-    keeps_digests_ = false;  // of all others
-    std::vector<std::string> rows;
-    for (const auto& [object, digest] : *digests_) rows.insert(rows.end(), {object, digest});
-    write_texts(digests_object, rows, {2});
-}
-
-const std::map<std::string, std::string>& File::digests() const {
-    if (digests_) return *digests_;
-    digests_.emplace();
-    if (!exists(digests_object)) return *digests_;
-    const auto rows = read_texts(digests_object);
-    if (rows.size() % 2 != 0) throw InputError(where(digests_object) + ": must be pairs");
-    for (std::size_t k = 0; k < rows.size(); k += 2) (*digests_)[rows[k]] = rows[k + 1];
-    return *digests_;
-}
-
-void File::expect_whole(const std::string& beginning, const std::function<void()>& before_each) const {
-    for (const auto& [object, digest] : digests()) {
-        if (!object.starts_with(beginning)) continue;
+void File::expect_whole(const std::function<void()>& before_each) const {
+    for (const std::string& table : tables()) {
         before_each();
-        dataset(object).expect_whole();
+        dataset(table).expect_whole();
     }
 }
 

@@ -7,9 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,7 +16,6 @@
 #include <vector>
 
 #include "core/atomic_file.h"
-#include "core/sha256.h"
 #include "io/hdf5_driver.h"
 
 namespace mcdem::inline io::h5 {
@@ -74,21 +71,6 @@ Handle text_type(std::size_t length);
 /// library.
 [[noreturn]] void fail(const FileBelow& file, const std::string& where, const std::string& what);
 
-/// SHA-256 of a table: of its values, row by row as they are in the file, then of its type and extent.
-/// README.md describes how to compute it elsewhere.
-struct TableDigest {
-    std::string expected;  ///< empty: of a table that is written
-    hsize_t rows = 0;      ///< added to `sum` so far
-    Sha256 sum;
-
-    void add(const std::vector<std::byte>& values, hsize_t new_rows);
-    /// Of all rows added; nothing may be added after.
-    std::string hex(hid_t type, const std::vector<hsize_t>& extent);
-};
-
-/// `values`, `count` of them, from one type to another.
-bool convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_t to);
-
 constexpr int deflate_level = 1;  // higher levels take five times as long for a few per cent
 
 /// The stored bytes of a chunk, filtered as by the library: shuffle, deflate, fletcher32. Its values have
@@ -113,16 +95,11 @@ public:
     std::vector<Number> read_all() const;
     /// Throws unless the dataset has `rank` dimensions and those after the first are `row`.
     void expect_row(const Extent& row) const;
-    /// For a table that is written: computes the digest of its rows. Call before the first row.
-    void keep_digest() { digest_ = std::make_unique<TableDigest>(); }
-    /// For a compressed table that is written and has a digest: whole chunks of so many rows are filtered on
-    /// all cores. Deflating takes more than half of the time of writing, and the library uses one core.
+    /// For a compressed table that is written: whole chunks of so many rows are filtered on all cores (0: the
+    /// library filters all chunks). Deflating takes more than half of the time of writing, and the library
+    /// uses one core.
     void filter_chunks(hsize_t rows) { chunk_rows_ = rows; }
-    /// Digest of the appended rows. Do not append afterwards.
-    std::string digest() const;
-    /// Expected digest of the rows; checked if they are read in order from first to last.
-    void expect_digest(const std::string& digest);
-    /// Reads all rows. Throws InputError if their digest is wrong.
+    /// Reads all rows. Throws InputError if a checksum is wrong.
     void expect_whole() const;
     /// For a table that was written: returns only if all of it is in the file, otherwise throws.
     void close();
@@ -135,14 +112,10 @@ private:
     std::size_t values_in(hsize_t rows) const;
     void write_rows(hid_t memory_type, const void* data, hsize_t rows);
     void write_chunks(hid_t stored, const std::byte* data, hsize_t chunks);
-    void read_rows(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const;
-    void read_checked(hid_t memory_type, std::byte* data, hsize_t rows) const;
-    void check_digest() const;
     Handle id_;
     const FileBelow* file_;
     std::string where_;
-    hsize_t chunk_rows_ = 0;                       ///< 0: the library filters all chunks
-    mutable std::unique_ptr<TableDigest> digest_;  ///< of the rows appended or read so far
+    hsize_t chunk_rows_ = 0;
 };
 
 class File {
@@ -165,17 +138,11 @@ public:
     Dataset create_rows(const std::string& object, hid_t file_type, const Extent& row,
                         Storage storage = Storage::compressed, hsize_t rows_expected = 0);
     Dataset dataset(const std::string& object) const;
-    /// From now on every new table has a digest; `write_digests` writes those of the finished tables to the
-    /// file.
-    void keep_digests() { keeps_digests_ = true; }
-    void finish(Dataset& table);
-    void write_digests();
-    /// By table name. Empty in files without digests.
-    const std::map<std::string, std::string>& digests() const;
-    /// Reads all tables with a digest whose names begin with `beginning`. Throws InputError if one is missing
-    /// or its digest is wrong. `before_each` is called before each table; what it throws is passed on.
-    void expect_whole(
-        const std::string& beginning = "/", const std::function<void()>& before_each = [] {}) const;
+    /// Names of all tables of the file.
+    std::vector<std::string> tables() const;
+    /// Reads all tables. Throws InputError if a checksum is wrong. `before_each` is called before each table;
+    /// what it throws is passed on.
+    void expect_whole(const std::function<void()>& before_each) const;
     template <class Number>
     void write(const std::string& object, const std::vector<Number>& values, const Extent& row = {});
     void write_texts(const std::string& object, const std::vector<std::string>& texts,
@@ -213,8 +180,6 @@ private:
     std::unique_ptr<FileBelow> below_;  ///< used by id_ until it is closed
     std::filesystem::path path_;
     Handle id_;
-    bool keeps_digests_ = false;
-    mutable std::optional<std::map<std::string, std::string>> digests_;
 };
 
 template <class Number>
@@ -229,7 +194,7 @@ void File::write(const std::string& object, const std::vector<Number>& values, c
     const Handle type = number_type<Number>();
     Dataset table = create_rows(object, type, row);
     table.append(type, values.data(), values.size() / values_in(row));
-    finish(table);
+    table.close();
 }
 
 }  // namespace mcdem::io::h5

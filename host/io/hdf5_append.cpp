@@ -43,6 +43,17 @@ std::uint32_t fletcher32(const std::vector<std::byte>& bytes) {
     return sum_of_sums << 16 | sum;
 }
 
+/// `values`, `count` of them, from one type to another.
+bool convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_t to) {
+    if (count == 0 || H5Tequal(from, to) > 0) return true;
+    const std::size_t from_size = H5Tget_size(from), to_size = H5Tget_size(to);
+    values.resize(count * std::max(from_size, to_size));
+    std::vector<std::byte> background(count * to_size);
+    if (H5Tconvert(from, to, count, values.data(), background.data(), H5P_DEFAULT) < 0) return false;
+    values.resize(count * to_size);
+    return true;
+}
+
 }  // namespace
 
 std::vector<std::byte> filtered(std::span<const std::byte> chunk, std::size_t value_size) {
@@ -54,14 +65,12 @@ std::vector<std::byte> filtered(std::span<const std::byte> chunk, std::size_t va
 
 void Dataset::append(hid_t memory_type, const void* data, hsize_t rows) {
     if (rows == 0) return;
-    if (!digest_) return write_rows(memory_type, data, rows);
+    if (chunk_rows_ == 0) return write_rows(memory_type, data, rows);
     const Handle stored = type();
     const auto* begin = static_cast<const std::byte*>(data);
     const std::size_t count = values_in(rows), row_bytes = count / rows * H5Tget_size(stored);
     std::vector<std::byte> values(begin, begin + count * H5Tget_size(memory_type));
     if (!convert(values, count, memory_type, stored)) fail("has values of a type that cannot be converted");
-    digest_->add(values, rows);
-    if (chunk_rows_ == 0) return write_rows(stored, values.data(), rows);
     const hsize_t missing = (chunk_rows_ - this->rows() % chunk_rows_) % chunk_rows_;  // of the last chunk
     const hsize_t first = std::min(missing, rows), chunks = (rows - first) / chunk_rows_;
     const hsize_t last = first + chunks * chunk_rows_;

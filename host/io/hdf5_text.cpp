@@ -122,7 +122,7 @@ void File::write_texts(const std::string& object, const std::vector<std::string>
     const Handle type = text_type(length);
     Dataset table = create_rows(object, type, row);
     table.append(type, padded.data(), texts.size() / values_in(row));
-    finish(table);
+    table.close();
 }
 
 std::vector<std::string> File::read_texts(const std::string& object) const {

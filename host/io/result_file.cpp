@@ -198,14 +198,4 @@ void ResultFile::fill(Scan& scan, std::size_t grains, std::size_t replica, std::
     read_vectors(one, &Scan::rotation, grains, particles_path(replica) + "/rotation");
 }
 
-void ResultFile::expect_whole(const std::function<void()>& before_each) const {
-    file_.expect_whole("/", before_each);
-}
-
-void ResultFile::expect_whole(std::size_t replica) const {
-    file_.expect_whole(particles_path(replica) + "/position/");
-    file_.expect_whole(particles_path(replica) + "/rotation/");
-    file_.expect_whole(contacts_path(replica) + "/");
-}
-
 }  // namespace mcdem::io

@@ -3,7 +3,6 @@
 #pragma once
 #include <functional>
 #include <optional>
-#include <set>
 #include <span>
 
 #include "core/recording.h"
@@ -77,12 +76,10 @@ public:
     std::vector<Scan> scans(const Recording& recording, std::size_t replica, ReadWhat what) const;
     /// Fills in positions, rotations and contacts of the scan in row `row`.
     void fill(Scan& scan, std::size_t grains, std::size_t replica, std::size_t row) const;
-    /// False in files without digests.
-    bool has_digests() const { return !file_.digests().empty(); }
-    /// Reads all tables. Throws InputError with the name of the first one whose digest is wrong.
-    void expect_whole(const std::function<void()>& before_each = [] {}) const;
-    /// The same for positions and contacts of one replica.
-    void expect_whole(std::size_t replica) const;
+    /// Reads all tables. Throws InputError with the name of the first one with a wrong checksum.
+    void expect_whole(const std::function<void()>& before_each = [] {}) const {
+        file_.expect_whole(before_each);
+    }
 
 private:
     /// Scans to read: those in the rows from `first` on, and whether these are all.
@@ -108,16 +105,13 @@ private:
 class ResultFiles {
 public:
     explicit ResultFiles(std::vector<std::filesystem::path> paths)
-        : paths_(std::move(paths)), open_(paths_.size()), checked_(paths_.size()) {}
+        : paths_(std::move(paths)), open_(paths_.size()) {}
     const std::vector<std::filesystem::path>& paths() const { return paths_; }
     const ResultFile& open(std::size_t index);
-    /// The file, after checking the digests of this replica's positions and contacts.
-    const ResultFile& checked(std::size_t index, std::size_t replica);
 
 private:
     std::vector<std::filesystem::path> paths_;
     std::vector<std::optional<ResultFile>> open_;
-    std::vector<std::set<std::size_t>> checked_;  ///< replicas by file
 };
 
 /// Provenance and recordings, without scans, of a run in several consecutive files.

@@ -27,7 +27,6 @@ ResultWriter::ResultWriter(NewFile& out, const Run& run, std::function<void()> b
       scan_row_(scan_row_type()),
       is_double_(run.precision == name(Precision::double_precision)) {
     contact_row_ = is_double_ ? contact_row_type<double>() : contact_row_type<float>();
-    file_.keep_digests();
     write_provenance(run);
     for (std::size_t r = 0; r < run.recordings.size(); ++r) {
         between_();
@@ -190,12 +189,10 @@ void ResultWriter::flush_contacts(Tables& tables) {
 void ResultWriter::close() {
     for (Tables& tables : tables_) {
         between_();
-        for (h5::Dataset* table : {&tables.scans, &tables.contacts, &tables.contact_offset})
-            file_.finish(*table);
+        for (h5::Dataset* table : {&tables.scans, &tables.contacts, &tables.contact_offset}) table->close();
         for (auto* vectors : {&tables.position, &tables.rotation})
-            for (h5::Dataset& table : *vectors) file_.finish(table);
+            for (h5::Dataset& table : *vectors) table.close();
     }
-    file_.write_digests();
     file_.close();
 }
 

@@ -75,12 +75,6 @@ const ResultFile& ResultFiles::open(std::size_t index) {
     return open_[index].emplace(paths_[index]);
 }
 
-const ResultFile& ResultFiles::checked(std::size_t index, std::size_t replica) {
-    const ResultFile& file = open(index);
-    if (checked_[index].insert(replica).second) file.expect_whole(replica);
-    return file;
-}
-
 RunReader::RunReader(const std::filesystem::path& file_or_folder)
     : files_(std::make_unique<ResultFiles>(result_files(file_or_folder))) {
     const auto& paths = files_->paths();
@@ -103,8 +97,7 @@ Scan RunReader::read_scan(std::size_t replica, std::size_t scan) {
     std::size_t f = first_scan_.size() - 1;
     while (first_scan_[f][replica] > scan) --f;
     guarded(files_->paths()[f], [&] {
-        files_->checked(f, replica)
-            .fill(filled, recording.diameter.size(), replica, scan - first_scan_[f][replica]);
+        files_->open(f).fill(filled, recording.diameter.size(), replica, scan - first_scan_[f][replica]);
     });
     return filled;
 }

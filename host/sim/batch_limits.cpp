@@ -24,9 +24,8 @@ constexpr double max_steps = 1e11;  // times 1e7 grains it fits into a long
 std::string remedy(std::size_t replicas, double part) {
     const auto fitting = static_cast<std::size_t>(part * static_cast<double>(replicas));
     if (replicas > 1 && fitting > 0)
-        return fmt::format(
-            "take at most {} replicas in one go (`mcdem run .. --device all --part-replicas {}`)", fitting,
-            fitting);
+        return fmt::format("take at most {} replicas in one go (`mcdem run .. --part-replicas {}`)", fitting,
+                           fitting);
     return "take fewer grains, fewer numerics.slots, numerics.precision = \"float\", or a device with more "
            "memory";
 }

@@ -5,9 +5,12 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+
+#include "cli/shell/subprocess.h"
 
 namespace mcdem {
 namespace {
@@ -78,6 +81,19 @@ Finished Child::wait() {
 Finished run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
                      const std::vector<std::string>& environment) {
     return Child(folder, arguments, environment).wait();
+}
+
+Finished output_of_shell(const std::string& script) {
+    Finished end;
+    std::FILE* const pipe = ::popen(("exec bash -c " + shell_word(script)).c_str(), "r");
+    if (!pipe) throw std::runtime_error("bash cannot be started");
+    char block[4096];
+    for (std::size_t size; (size = std::fread(block, 1, sizeof block, pipe)) > 0;)
+        end.out.append(block, size);
+    const int status = ::pclose(pipe);
+    if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+    if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+    return end;
 }
 
 }  // namespace mcdem

@@ -39,4 +39,7 @@ private:
 Finished run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
                      const std::vector<std::string>& environment = {});
 
+/// Standard output and end of a script of bash.
+Finished output_of_shell(const std::string& script);
+
 }  // namespace mcdem

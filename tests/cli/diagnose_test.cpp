@@ -174,7 +174,6 @@ TEST_F(DiagnoseTest, TwoAtOnceWithANewLibraryBothGiveAVerdict) {
     wait_until_held(first);
     expect_done(mcdem(words("second")));
     const std::string written = bytes_of_file(path("l"));
-    expect_done(mcdem({"verify", "l"}));
     let_go_on(first);
     const Finished finished = first.wait();
     expect_done(finished);
@@ -196,11 +195,10 @@ TEST_F(DiagnoseTest, WithItsLibraryInPartsIsTheSame) {
     };
     const auto missing = in_parts({"--missing"});
     expect_done(missing);
-    EXPECT_THAT(missing.out, testing::StartsWith("0\n"));
+    EXPECT_THAT(missing.out, testing::StartsWith("1/"));
     std::istringstream numbers(missing.out);
     for (std::string number; numbers >> number;) expect_done(in_parts({"--part", number}));
     EXPECT_EQ(in_parts({"--missing"}).out, "");
-    expect_bad_input(in_parts({"--part", "99"}), "--part: must be below");
     expect_done(in_parts({"--merge"}));
     auto told = nlohmann::json::parse(std::ifstream(path("parts/diagnosis.json")));
     for (auto* one : {&alone, &told}) one->erase("seconds");

@@ -213,7 +213,7 @@ replicas = 2
         expect_done(mcdem(stressed(out, {"--resume"}), {"POCL_MAX_PTHREAD_COUNT=2"}));
         EXPECT_TRUE(result(out) == result("whole")) << launches;
     }
-    expect_done(mcdem(stressed("parts", {"--device", "all", "--part-replicas", "1"})));
+    expect_done(mcdem(stressed("parts", {"--part-replicas", "1"})));
     EXPECT_TRUE(result("parts") == result("whole"));
 }
 
@@ -332,7 +332,7 @@ TEST_F(InterruptionTest, FolderThatCannotBeWrittenToIsRefusedAtOnce) {
     };
     expect_refused(words("disk/empty", false), "cannot be written to: Read-only file system");
     expect_refused(words("disk/begun", true), "cannot be written to: Read-only file system");
-    expect_refused(run_words("disk/shared", {"--part=0"}), "cannot be written to: Read-only file system");
+    expect_refused(run_words("disk/shared", {"--part=1/2"}), "cannot be written to: Read-only file system");
 }
 
 TEST_F(InterruptionTest, FolderThatBecomesReadOnlyEndsTheRunWhichCanBeResumedLater) {

@@ -39,8 +39,7 @@ TEST_F(OutputTest, NothingIsWrittenIntoAnExperimentWhateverItsPath) {
     fs::create_directory(path("begun/sub"));
     const auto before = all("lab");
     for (const std::string out : {"lab", "./begun/../lab", "link", "lab/"}) {
-        for (const std::vector<std::string>& how :
-             {std::vector<std::string>{}, {"--part=0"}, {"--device=all"}})
+        for (const std::vector<std::string>& how : {std::vector<std::string>{}, {"--part=1/2"}, {"--merge"}})
             expect_bad_input(mcdem(run_words(out, how)), "is the folder of an experiment");
         expect_bad_input(mcdem({"diagnose", "small.toml", "--experiment", "lab", "--out", out}),
                          "of an experiment");
@@ -50,7 +49,6 @@ TEST_F(OutputTest, NothingIsWrittenIntoAnExperimentWhateverItsPath) {
         expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "begun", "--setting",
                                 "elastic_sphere", "--out", out}),
                          "of an experiment");
-        expect_bad_input(mcdem({"manual", "--out", out}), "of an experiment");
         expect_bad_input(mcdem({"converge", "small.toml", "--out", out}), "of an experiment");
         expect_bad_input(mcdem({"experiment", "from-run", "begun", "--replica", "0", "--out", out}),
                          "holds another");
@@ -62,8 +60,7 @@ TEST_F(OutputTest, ARunDoesNotReplaceTables) {
     for (const std::string table :
          {"frame,cycle,phase,plate_z_m,top_force_N\n0,0,load,0.1,0\n", "my notes"}) {
         write("tables/plate.csv", table);
-        for (const std::vector<std::string>& how :
-             {std::vector<std::string>{}, {"--part=0"}, {"--device=all"}})
+        for (const std::vector<std::string>& how : {std::vector<std::string>{}, {"--part=1/2"}, {"--merge"}})
             expect_bad_input(mcdem(run_words("tables", how)),
                              "plate.csv: is not the table of a run; it is not replaced");
         EXPECT_EQ(text("tables/plate.csv"), table);
@@ -102,7 +99,6 @@ TEST_F(OutputTest, OwnFilesAreReplaced) {
         expect_done(mcdem({"figures", "a", "--out", "view"}));
         expect_done(
             mcdem({"compare", "a", "--against", "a", "--setting", "elastic_sphere", "--out", "view"}));
-        expect_done(mcdem({"manual", "--out", "view"}));
     }
 }
 
@@ -120,11 +116,10 @@ TEST_F(OutputTest, FilesOfOthersAreKept) {
     expect_kept("5/replica_00000_independent.contacts.dump", {"export", "a", "--xyz", "--out", "5"});
     expect_kept("6/top_force.pdf", {"figures", "a", "--out", "6"});
     expect_kept("7/scaling.svg", {"figures", "a", "--out", "7"});
-    expect_kept("8/mcdem-run.1", {"manual", "--out", "8"});
-    expect_kept("9/calibration.json", {"calibrate", "small.toml", "--experiment", "a", "--setting",
-                                       "elastic_sphere", "--out", "9"});
-    expect_kept("10/convergence.json", {"converge", "small.toml", "--out", "10"});
-    expect_kept("11/convergence.png", {"converge", "small.toml", "--out", "11"});
+    expect_kept("8/calibration.json", {"calibrate", "small.toml", "--experiment", "a", "--setting",
+                                       "elastic_sphere", "--out", "8"});
+    expect_kept("9/convergence.json", {"converge", "small.toml", "--out", "9"});
+    expect_kept("10/convergence.png", {"converge", "small.toml", "--out", "10"});
 }
 
 TEST_F(OutputTest, ADiagnosisReplacesOnlyItsOwnFiles) {

@@ -89,7 +89,7 @@ private:
     Checkpoint saved_;
 };
 
-/// The checkpoint is written anew with its digests, so that the contents are accepted.
+/// The checkpoint is written anew with its checksums, so that the contents are accepted.
 void try_checkpoint(ByteSource& source) {
     static Restarted simulation;
     Checkpoint checkpoint = simulation.saved();

@@ -36,15 +36,15 @@ std::vector<Bytes> stored_chunks(const std::filesystem::path& path, const char* 
     return chunks;
 }
 
-/// Writes a table in appends of these numbers of rows. Only tables with digests are filtered on all cores.
+/// Writes a table in appends of these numbers of rows.
 template <class Number>
 void write_table(const std::filesystem::path& path, bool by_library, const std::vector<Number>& values,
                  const h5::Extent& row, const std::vector<hsize_t>& appends) {
     replace_file(path, [&](NewFile& out) {
         auto file = h5::File::create(out);
-        if (!by_library) file.keep_digests();
         const auto type = h5::number_type<Number>();
         auto table = file.create_rows("/table", type, row);
+        if (by_library) table.filter_chunks(0);
         const Number* next = values.data();
         for (const hsize_t rows : appends) {
             table.append(type, next, rows);

@@ -126,7 +126,6 @@ std::string error_with(const std::string& path, const std::vector<Number>& value
     write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 2}));
     {
         const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
-        H5Ldelete(file, "/digests", H5P_DEFAULT);  // the change must be detected without digests
         H5Ldelete(file, path.c_str(), H5P_DEFAULT);
         const hsize_t size = values.size();
         const h5::Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
@@ -220,56 +219,6 @@ TEST(damaged_files, external_links_and_files_are_not_read) {
             H5Dclose(H5Dcreate2(file, scene.c_str(), text, one_row(), H5P_DEFAULT, layout, H5P_DEFAULT));
         }),
         HasSubstr(refused));
-}
-
-/// Changes one value of a table as if it had been written so.
-void change_first_byte(hid_t file, const std::string& object) {
-    const h5::Handle table(H5Dopen2(file, object.c_str(), H5P_DEFAULT), H5Dclose);
-    const h5::Handle type(H5Dget_type(table), H5Tclose), space(H5Dget_space(table), H5Sclose);
-    std::vector<char> bytes(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)) *
-                            H5Tget_size(type));
-    H5Dread(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
-    bytes.front() ^= 1;
-    H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
-}
-
-TEST(damaged_files, changed_values_are_detected_in_every_table) {
-    for (const std::string object :
-         {"/observables/replica_00000", "/contacts/replica_00000/contact",
-          "/particles/replica_00000/diameter", "/particles/replica_00000/position/value",
-          "/particles/replica_00000/position/time", "/parameters/replica_00000", "/parameters/scene"}) {
-        const std::string error =
-            error_after([&](hid_t file, const std::filesystem::path&) { change_first_byte(file, object); });
-        if (object.ends_with("/time"))
-            EXPECT_EQ(error, "no error");  // not read: scans contain the time
-        else
-            EXPECT_THAT(error, HasSubstr(object + ": does not have the digest"));
-    }
-}
-
-TEST(damaged_files, a_run_read_scan_by_scan_is_verified_first) {
-    TemporaryFolder folder;
-    write_run(folder / "run.h5", synthetic_run({.replicas = 2, .scans = 2}));
-    {
-        const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
-        change_first_byte(file, "/particles/replica_00001/position/value");
-    }
-    RunReader reader(folder / "run.h5");
-    EXPECT_NO_THROW(reader.read_scan(0, 1));
-    EXPECT_THROW(reader.read_scan(1, 1), InputError);
-}
-
-TEST(damaged_files, files_without_digests_can_be_read) {
-    TemporaryFolder folder;
-    const auto run = synthetic_run();
-    write_run(folder / "run.h5", run);
-    EXPECT_TRUE(ResultFile(folder / "run.h5").has_digests());
-    {
-        const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
-        H5Ldelete(file, "/digests", H5P_DEFAULT);
-    }
-    expect_same(run, read_run(folder / "run.h5"));
-    EXPECT_FALSE(ResultFile(folder / "run.h5").has_digests());
 }
 
 TEST(damaged_files, contacts_of_missing_grains_are_refused) {

@@ -97,7 +97,6 @@ TEST(results, files_of_earlier_versions_have_no_rotations) {
     write_run(folder / "run.h5", run);
     {
         const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
-        H5Ldelete(file, "/digests", H5P_DEFAULT);
         for (std::size_t r = 0; r < run.recordings.size(); ++r)
             H5Ldelete(file, ("/particles/replica_0000" + std::to_string(r) + "/rotation").c_str(),
                       H5P_DEFAULT);

@@ -51,7 +51,7 @@ def check_looks(place, words, outputs=()):
 
 def results_are_looked_for(place):
     measured(place)
-    for words in (["table", "out"], ["verify", "out"], ["compare", "out", "--against", "out"], [*RUN, "--resume"]):
+    for words in (["table", "out"], ["compare", "out", "--against", "out"], [*RUN, "--resume"]):
         check_looks(place, words)
 
 
@@ -65,8 +65,7 @@ def scenes_and_packings_are_looked_for(place):
 
 def experiments_are_looked_for(place):
     measured(place)
-    for words in (["experiment", "check", "lab"], ["verify", "lab"]):
-        check_looks(place, words)
+    check_looks(place, ["experiment", "check", "lab"])
 
 
 def outputs_are_looked_for(place):
@@ -124,7 +123,7 @@ def check_publishing(place, words, out, whole, before=()):
                 now = without_temporaries(now)  # one is left where its removal failed or the kill came before it
             assert now == whole | set(before), (seen, now)
             assert all((place / out / name).read_text() == "kept\n" for name in before), seen
-            expect(mcdem(place, "verify", out), 0)
+            expect(mcdem(place, "experiment", "check", out), 0)
             assert left == whole or not list(place.glob("*.tmp")), seen  # of a kill: removed by the next command there
 
 

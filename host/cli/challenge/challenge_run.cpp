@@ -63,7 +63,7 @@ SharedWork shared_work(const RunChallengeCommand& command, const Scene& scene) {
 int run(RunChallengeCommand& command) {
     const Scene scene = command.scene.read();
     fill_in(command);
-    if (is_shared(command.sharing, command.device))
+    if (is_shared(command.sharing))
         return share(shared_work(command, scene), command.sharing, command.device);
     return run_alone(command, scene);
 }
@@ -102,10 +102,13 @@ void add_challenge_run(CLI::App& challenge, int& exit_code) {
     add_sharing_options(*sub, command->sharing, command->device);
     sub->footer(
         "The same command continues where an interrupted one stopped.\n"
-        "Many devices or nodes compute it in parts: the simulations of the library, then the cases.\n"
+        "Many devices or nodes compute it in parts (`mcdem distribute challenge run ..`): the simulations of "
+        "the "
+        "library,\n"
+        "then the cases.\n"
         "Example:\n"
-        "  mpirun -n 4 mcdem challenge run out/challenge --scene scenes/challenge.toml \\\n"
-        "      --library out/library.json --out out/diagnoses --mpi");
+        "  mcdem challenge run out/challenge --scene scenes/challenge.toml --library out/library.json --out "
+        "out/diagnoses");
     sub->callback([command, &exit_code] { exit_code = run(*command); });
 }
 

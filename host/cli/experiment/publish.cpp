@@ -78,7 +78,7 @@ void move_folder(const fs::path& work, const fs::path& out) {
         if (!refused || is_there(work)) throw;
         throw RunError(
             fmt::format("{}; the experiment is there, whole, but a power cut may remove it: check it by "
-                        "`mcdem verify {}`",
+                        "`mcdem experiment check {}`",
                         error.what(), out.string()));
     }
 }

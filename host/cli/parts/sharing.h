@@ -1,5 +1,4 @@
-// Command-line options for work in parts (ensemble/parts/parted_work.h). Parts are computed by this process,
-// the devices of this machine, MPI ranks, or a Slurm job array (host/ensemble/README.md).
+// Command-line options for work in parts (ensemble/parts/parted_work.h, host/ensemble/README.md).
 #pragma once
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -13,27 +12,27 @@
 
 namespace mcdem::inline cli {
 
-struct SharingOptions {
-    const CLI::App* command = nullptr;  ///< to which they were added
-    std::optional<std::size_t> part, workers;
-    bool missing = false, merge = false, mpi = false, slurm = false, no_wait = false;
-    int slurm_tasks = 4;
-    std::string slurm_partition, slurm_time;
-    std::string slurm_lines;  ///< file with lines for the job script
+/// The parts k with k % of = number - 1.
+struct WorkShare {
+    std::size_t number = 1, of = 1;
 };
 
-/// Adds --device, which may be `all` here, --part, --missing, --merge and --workers.
-void add_part_options(CLI::App& command, SharingOptions& options, std::string& device);
+struct SharingOptions {
+    const CLI::App* command = nullptr;  ///< to which they were added
+    std::optional<WorkShare> share;
+    std::size_t workers = 1;
+    bool missing = false, merge = false;
+};
 
-/// The same, plus the options of MPI and Slurm.
+/// Adds --part, --missing, --merge and --workers, and --device with its meaning here.
 void add_sharing_options(CLI::App& command, SharingOptions& options, std::string& device);
 
-/// The words of the command line ("run", scene, ..) without `--resume`, and, unless `all`, without options
-/// that determine where and how it runs.
-std::vector<std::string> words_of(const SharingOptions& options, bool all = false);
+/// The words of the command line ("run", scene, ..) without `--resume` and without options that determine
+/// where and how it runs.
+std::vector<std::string> words_of(const SharingOptions& options);
 
 /// Whether the command line requests work in parts.
-bool is_shared(const SharingOptions& options, const std::string& device);
+bool is_shared(const SharingOptions& options);
 
 struct SharedWork {
     std::filesystem::path out;  ///< the shared folder
@@ -45,7 +44,8 @@ struct SharedWork {
     std::function<int()> report;
 };
 
-/// Returns the exit code.
+/// Computes a share, lists what is missing, or merges, as the options say; otherwise computes all that is
+/// missing and merges. Returns the exit code.
 int share(const SharedWork& work, const SharingOptions& options, const std::string& device);
 
 }  // namespace mcdem::cli

@@ -32,7 +32,8 @@ void add_devices(CLI::App& app, int&) {
         "--out out/small --device 0\nWithout --device, a run uses MCDEM_DEVICE, else the first GPU, else the "
         "first device.");
     auto alike = std::make_shared<bool>(false);
-    command->add_flag("--alike", *alike, "Print only the numbers of the devices that `--device all` uses");
+    command->add_flag("--alike", *alike,
+                      "Print only the numbers of the devices that `mcdem distribute` uses");
     command->callback([alike] {
         if (!*alike) return print_devices();
         for (const int device : alike_devices("")) print_out("{}\n", device);

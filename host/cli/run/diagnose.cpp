@@ -86,7 +86,7 @@ int run(DiagnoseCommand& command) {
     const std::vector<Experiment> experiments =
         read_experiments({command.experiments.begin(), command.experiments.end()}, "--experiment");
     fill_in(command);
-    if (!is_shared(command.sharing, command.device)) return run_alone(command, scene, experiments);
+    if (!is_shared(command.sharing)) return run_alone(command, scene, experiments);
     SharedWork work;
     work.out = command.out;
     work.begin = [&](std::size_t) {
@@ -94,10 +94,7 @@ int run(DiagnoseCommand& command) {
         make_result_folder(command.out);
         return library_parts(scene, experiments, command.options);
     };
-    work.report = [&] {
-        if (command.device == "all") command.device.clear();
-        return run_alone(command, scene, experiments);
-    };
+    work.report = [&] { return run_alone(command, scene, experiments); };
     return share(work, command.sharing, command.device);
 }
 
@@ -140,7 +137,7 @@ void add_diagnose(CLI::App& app, int& exit_code) {
                     "File with the simulated changes by each effect, for use with further experiments; read "
                     "if it exists, otherwise computed and written")
         ->type_name("FILE");
-    add_part_options(*sub, command->sharing, command->device);
+    add_sharing_options(*sub, command->sharing, command->device);
     sub->footer(
         "The scene describes the simulation; box, plate and scans are taken from the experiment. Prints the "
         "verdict in\n"

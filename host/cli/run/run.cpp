@@ -192,7 +192,8 @@ int run_alone(const RunCommand& command, const Scene& scene) {
 
 int run(const RunCommand& command) {
     const Scene scene = command.scene.read();
-    if (is_shared(command.sharing, command.device) || (command.resume && is_run_in_parts(command.out)))
+    if (is_shared(command.sharing) || command.cut.part_replicas > 0 ||
+        (command.resume && is_run_in_parts(command.out)))
         return share(shared_work(command, scene), command.sharing, command.device);
     return run_alone(command, scene);
 }
@@ -209,7 +210,8 @@ void add_run(CLI::App& app, int& exit_code) {
     add_sharing_options(*sub, command->sharing, command->device);
     sub->add_option_function<std::size_t>(
            "--part-replicas", [command](std::size_t replicas) { command->cut.part_replicas = replicas; },
-           "Replicas per part; default: enough to fill a device, but at least two parts per process")
+           "Run in parts of so many replicas; default with --part: enough to fill a device, but at least two "
+           "parts per process")
         ->check(CLI::Range(1, 10'000))
         ->type_name("N")
         ->group("Many devices and nodes");
@@ -220,19 +222,17 @@ void add_run(CLI::App& app, int& exit_code) {
         "A run that is interrupted (Ctrl-C, crash, power cut) loses at most the time since its last "
         "checkpoint\n"
         "(output.checkpoint_minutes). Continue it with --resume; the results are bit-identical.\n"
-        "With --device all, --mpi, --slurm or `mcdem distribute` the run is computed in parts, with "
-        "bit-identical\n"
-        "results. Lost parts are computed again; to continue such a run give the same command again, "
-        "without\n"
+        "With --part, --part-replicas or `mcdem distribute` the run is computed in parts, with bit-identical "
+        "results.\n"
+        "Lost parts are computed again; to continue such a run give the same command again, without "
         "--resume.\n"
         "Examples:\n"
         "  mcdem run scenes/small.toml --out out/small\n"
         "  mcdem run scenes/compression.toml --out out/soft --set grains.youngs_modulus=10e3\n"
         "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere\n"
         "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere --resume\n"
-        "  mcdem run scenes/replicas.toml --out out/shared --device all\n"
-        "  mpirun -n 4 mcdem run scenes/replicas.toml --out out/shared --mpi\n"
-        "  mcdem run scenes/replicas.toml --out out/shared --slurm --slurm-tasks 8 --slurm-time 2:00:00");
+        "  mcdem run scenes/replicas.toml --out out/shared --part 3/8\n"
+        "  mcdem run scenes/replicas.toml --out out/shared --merge");
     sub->callback([command, &exit_code] { exit_code = run(*command); });
 }
 

@@ -1,5 +1,6 @@
 #include "cli/shell/cli.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -11,6 +12,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/standard_streams.h"
+#include "core/errors.h"
 #include "core/stack.h"
 #include "core/version.h"
 #include "io/run_packing.h"
@@ -73,16 +75,31 @@ void finish_options(CLI::App& app) {
         finish_options(*command);
 }
 
+/// Commands of earlier versions.
+void add_replaced(CLI::App& app) {
+    for (const auto& [name, remedy] : {std::pair{"verify",
+                                                 "every command checks the tables that it reads; `sha256sum "
+                                                 "--check SHA256SUMS` checks the files "
+                                                 "of an experiment"},
+                                       {"manual", "`mcdem COMMAND --help` shows the same text"}}) {
+        auto* command = app.add_subcommand(name)->group("")->allow_extras();
+        command->callback([name = name, remedy = remedy] {
+            throw InputError(fmt::format("{} is no command any more: {}", name, remedy));
+        });
+    }
+}
+
 int command_line(int argc, const char* const* argv) {
     CLI::App app(about, "mcdem");
     app.footer(first_steps);
     app.require_subcommand(1);
     app.set_version_flag("--version", std::string("mcdem ") + version_text);
     int exit_code = exit_done;
-    for (const auto add : {add_devices, add_validate, add_run, add_distribute, add_verify, add_table,
-                           add_compare, add_figures, add_report, add_calibrate, add_converge, add_export,
-                           add_experiment, add_diagnose, add_challenge, add_completion, add_manual})
+    for (const auto add : {add_devices, add_validate, add_run, add_distribute, add_table, add_compare,
+                           add_figures, add_report, add_calibrate, add_converge, add_export, add_experiment,
+                           add_diagnose, add_challenge, add_completion})
         add(app, exit_code);
+    add_replaced(app);
     finish_options(app);
     try {
         app.parse(argc, argv);

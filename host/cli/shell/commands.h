@@ -15,7 +15,6 @@ void add_devices(CLI::App& app, int& exit_code);
 void add_validate(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_distribute(CLI::App& app, int& exit_code);
-void add_verify(CLI::App& app, int& exit_code);
 void add_table(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_figures(CLI::App& app, int& exit_code);
@@ -30,13 +29,9 @@ void add_challenge_run(CLI::App& challenge, int& exit_code);
 void add_challenge_score(CLI::App& challenge, int& exit_code);
 void add_experiment(CLI::App& app, int& exit_code);
 void add_completion(CLI::App& app, int& exit_code);
-void add_manual(CLI::App& app, int& exit_code);
 
 /// Checks of finite numbers. CLI11's own checks print the largest double with its 309 digits.
 const CLI::Validator& at_least_zero();
 const CLI::Validator& above_zero();
-
-/// The subcommands that the help lists.
-std::vector<const CLI::App*> listed_commands(const CLI::App& command);
 
 }  // namespace mcdem::cli

@@ -11,6 +11,11 @@
 namespace mcdem::inline cli {
 namespace {
 
+/// The subcommands that the help lists.
+std::vector<const CLI::App*> listed_commands(const CLI::App& command) {
+    return command.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); });
+}
+
 /// Prints one candidate, if it continues the word: `CANDIDATE`, or `CANDIDATE<tab>DESCRIPTION`.
 void offer(const std::string& word, const std::string& candidate, const std::string& description = "") {
     if (!candidate.starts_with(word)) return;

@@ -1,6 +1,5 @@
 #include "cli/shell/subprocess.h"
 
-#include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,8 +15,7 @@
 namespace mcdem::inline cli {
 namespace {
 
-/// `out`: descriptor for its standard output, or -1.
-pid_t start(std::vector<std::string>& words, int out) {
+pid_t start(std::vector<std::string>& words) {
     std::vector<char*> arguments;
     for (auto& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
@@ -27,7 +25,7 @@ pid_t start(std::vector<std::string>& words, int out) {
     if (process == 0) {  // only async-signal-safe functions between fork and exec
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent) ::_exit(not_found);
-        if (out < 0 || ::dup2(out, STDOUT_FILENO) >= 0) ::execvp(arguments[0], arguments.data());
+        ::execvp(arguments[0], arguments.data());
         ::_exit(not_found);
     }
     return process;
@@ -42,7 +40,7 @@ ProgramEnd end_of(int status) {
 
 }  // namespace
 
-Subprocess::Subprocess(std::vector<std::string> words) : process_(start(words, -1)) {}
+Subprocess::Subprocess(std::vector<std::string> words) : process_(start(words)) {}
 
 Subprocess::Subprocess(Subprocess&& other) noexcept
     : process_(std::exchange(other.process_, -1)), end_(std::move(other.end_)) {}
@@ -66,28 +64,6 @@ std::optional<ProgramEnd> Subprocess::ended() {
 
 void Subprocess::send(int signal) const {
     if (process_ >= 0) ::kill(process_, signal);
-}
-
-std::optional<ProgramEnd> output_of(std::vector<std::string> words) {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) throw RunError("no pipe to " + words.front());
-    const pid_t process = start(words, ends[1]);
-    ::close(ends[1]);
-    std::string out;
-    char block[4096];
-    for (ssize_t size; (size = ::read(ends[0], block, sizeof block)) != 0;)
-        if (size > 0)
-            out.append(block, static_cast<std::size_t>(size));
-        else if (errno != EINTR)
-            break;
-    ::close(ends[0]);
-    int status = 0;
-    while (::waitpid(process, &status, 0) < 0)
-        if (errno != EINTR) throw RunError(words.front() + ": lost: " + std::strerror(errno));
-    ProgramEnd end = end_of(status);
-    if (end.exit_code == not_found) return std::nullopt;
-    end.out = std::move(out);
-    return end;
 }
 
 std::filesystem::path this_program() { return std::filesystem::read_symlink("/proc/self/exe"); }

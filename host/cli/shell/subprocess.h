@@ -14,7 +14,6 @@ inline constexpr int not_found = 127;  ///< exit code if the program does not ex
 struct ProgramEnd {
     int exit_code = -1;  ///< -1 if a signal ended it
     int signal = 0;
-    std::string out;  ///< captured standard output, if requested
 };
 
 /// A child process; it gets SIGTERM when this program dies.
@@ -35,9 +34,6 @@ private:
     pid_t process_ = -1;  ///< -1 after it has ended
     std::optional<ProgramEnd> end_;
 };
-
-/// Runs a program from the search path and captures its output. Nothing if the program does not exist.
-std::optional<ProgramEnd> output_of(std::vector<std::string> words);
 
 std::filesystem::path this_program();
 

@@ -27,6 +27,8 @@ public:
         parts_ = parts_of_trials(common_, trials);
     }
 
+    std::size_t count() override { return parts_.size(); }
+
     std::vector<std::size_t> missing() override {
         const auto device = read_manifest(device_file(options_.folder));
         std::vector<std::size_t> numbers;
@@ -38,9 +40,6 @@ public:
 
     void compute(Device& device, std::size_t part) override {
         keep_manifest(device_file(options_.folder), {{"device", device.description()}});
-        if (part >= parts_.size())
-            throw InputError(fmt::format(
-                "--part: must be below {}, the number of parts of the library, got {}", parts_.size(), part));
         observe_trials(device, common_, parts_[part], store_, {on_progress, options_.stop_wanted});
     }
 

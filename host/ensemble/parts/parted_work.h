@@ -15,7 +15,10 @@ class PartedWork {
 public:
     virtual ~PartedWork() = default;
 
-    /// Numbers of the missing parts that can be computed now; empty when all are computed.
+    /// Number of all parts.
+    virtual std::size_t count() = 0;
+
+    /// Numbers of the missing parts that can be computed now, from 0; empty when all are computed.
     virtual std::vector<std::size_t> missing() = 0;
 
     /// Computes a part, unless a complete one exists. Throws Interrupted, InputError and RunError.

@@ -225,9 +225,6 @@ RunEnd RunParts::run_part(Device& device, std::size_t part, const fs::path& work
 
 void RunParts::compute(Device& device, std::size_t part) try {
     if (is_merged(options_.folder)) return;
-    if (part >= count_)
-        throw InputError(fmt::format("--part: must be below {}, the number of parts of {}, got {}", count_,
-                                     options_.folder.string(), part));
     keep_manifest(device_file(parts_folder(options_.folder)), manifest_of(device, scene_));
     if (is_whole(part)) return;
     const fs::path work = take_work_folder(part);

@@ -21,11 +21,11 @@ public:
     /// the scene differ from the original ones; RunError.
     RunParts(const Scene& scene, const RunOptions& options, const RunCut& cut);
 
+    std::size_t count() override { return count_; }
     std::vector<std::size_t> missing() override;
     /// Also throws InputError if the device is of another kind than those that computed the other parts.
     void compute(Device& device, std::size_t part) override;
     bool merge() override;
-    std::size_t count() const { return count_; }
 
 private:
     std::size_t begin(const RunCut& cut);

@@ -4,7 +4,7 @@ mcdem.distributed.run("scene.toml", "out/sweep")                           # one
 mcdem.distributed.run("scene.toml", "out/sweep", client=Client(cluster))   # any cluster: Slurm, PBS, LSF, Kubernetes, ..
 mcdem.distributed.compute(["challenge", "run", ...])                           # any command that works in parts
 
-Each part is a process `mcdem .. --part K`. On this machine nothing listens for others. With Dask all machines need the program and the
+Each part is a process `mcdem .. --part K/N`. On this machine nothing listens for others. With Dask all machines need the program and the
 folders under the same paths. If a process or a worker is lost, its part is computed again: parts are bit-identical wherever they are
 computed.
 """
@@ -25,6 +25,7 @@ from .program import raise_when_interrupted
 from .toml import assignments
 
 TRIES = 3  # per part, not counting lost workers
+KEPT = "finished parts are kept, and the same command continues"
 
 
 def run(scene: str | os.PathLike[str], out: str | os.PathLike[str], *, settings: dict[str, Any] | None = None,
@@ -49,7 +50,11 @@ def compute(words: list[str], *, client: Any = None, folder: str | os.PathLike[s
     folder = os.path.abspath(folder or ".")
     if client:
         report(f"dashboard: {client.dashboard_link}")
-    Work([program_path(), *words], folder, tries, report).compute(DaskWorkers(client) if client else LocalDevices(folder))
+    try:
+        Work([program_path(), *words], folder, tries, report).compute(DaskWorkers(client) if client else LocalDevices(folder))
+    except KeyboardInterrupt:
+        report(f"interrupted; {KEPT}")
+        raise
 
 
 class Work:
@@ -57,7 +62,8 @@ class Work:
         self.command, self.folder, self.tries, self.report = command, folder, tries, report
 
     def missing(self, workers):
-        return [int(part) for part in ask([*self.command[1:], "--missing", "--workers", str(workers)], self.folder).split()]
+        """The parts as --part takes them."""
+        return ask([*self.command[1:], "--missing", "--workers", str(workers)], self.folder).split()
 
     def compute(self, workers):
         before = None
@@ -73,7 +79,7 @@ class Work:
                 if not missing:
                     raise RunError(f"the parts could not be merged: exit code {code}")
             if missing == before:
-                raise RunError("no part could be finished: fix the errors above first")
+                raise RunError("no part could be finished: fix the errors above first; " + KEPT)
             self.compute_parts(workers, missing)
             before = missing
 
@@ -90,10 +96,11 @@ class Work:
 
 
 class LocalDevices:
-    """Computes one part at a time on each device of this machine."""
+    """Computes one part at a time on each device of this machine. A device on which a process fails is left out while others remain."""
 
     def __init__(self, folder):
         self.devices = ask(["devices", "--alike"], folder).split()
+        self.lock = threading.Lock()
 
     def count(self):
         return len(self.devices)
@@ -103,6 +110,8 @@ class LocalDevices:
         self.free, self.running, self.is_ended = queue.SimpleQueue(), set(), threading.Event()
         for device in self.devices:
             self.free.put(device)
+        if len(self.devices) > 1:
+            work.report(f"{len(self.devices)} devices, a process on each")
         with concurrent.futures.ThreadPoolExecutor(len(self.devices)) as pool:
             futures = {pool.submit(self.compute, work, part): part for part in parts}
             try:
@@ -121,11 +130,25 @@ class LocalDevices:
             for more in reversed(range(work.tries)):
                 try:
                     return compute_part(work.command, work.folder, part, device, self.started)
-                except RuntimeError:
+                except Killed:
                     if not more or self.is_ended.is_set():
                         raise
+                except RuntimeError as error:
+                    if not more or self.is_ended.is_set():
+                        raise
+                    if self.leaves_out(device):
+                        work.report(f"part {part}: {error}; device {device} is left out from here on")
+                        device = self.free.get()
         finally:
             self.free.put(device)
+
+    def leaves_out(self, device):
+        """Unless it is the last one."""
+        with self.lock:
+            is_one_of_many = len(self.devices) > 1
+            if is_one_of_many:
+                self.devices.remove(device)
+            return is_one_of_many
 
     def started(self, process):
         self.running.add(process)
@@ -152,9 +175,13 @@ class DaskWorkers:
             self.client.cancel(list(futures))
 
 
+class Killed(RuntimeError):
+    """A signal ended the process of a part."""
+
+
 def compute_part(command, folder, part, device="", started=lambda process: None):
     """Returns None, or the reason why the program refuses its input. Raises RuntimeError after a failure, for another try."""
-    words = [*command, "--part", str(part)] + (["--device", device] if device else [])
+    words = [*command, "--part", part] + (["--device", device] if device else [])
     if shutil.which("setpriv"):  # ends the process with this one
         words = ["setpriv", "--pdeathsig", "TERM", *words]
     with subprocess.Popen(words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
@@ -163,6 +190,8 @@ def compute_part(command, folder, part, device="", started=lambda process: None)
         said = process.stderr.read()
     if process.returncode == 2:
         return said
+    if process.returncode < 0:
+        raise Killed(f"ended by signal {-process.returncode}")
     if process.returncode != 0:
         raise RuntimeError(f"exit code {process.returncode}: {said.strip()[-1000:]}")
     return None
