@@ -20,13 +20,13 @@ install(FILES ${described}/mcdem.bash DESTINATION ${share}/bash-completion/compl
 install(FILES ${described}/mcdem.zsh DESTINATION ${share}/zsh/vendor-completions RENAME _mcdem COMPONENT program)
 install(FILES ${described}/mcdem.fish DESTINATION ${share}/fish/vendor_completions.d COMPONENT program)
 install(DIRECTORY host/python/mcdem DESTINATION ${share}/mcdem/python COMPONENT program  # what commands run
-  FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
+  FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "*.jinja" PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY scenes DESTINATION ${share}/mcdem COMPONENT program)
 
 # The engine: all floors below the command line and the Python module.
-set(floors core elasticity scene cl sim io experiment metrics calibrate diagnose report ensemble)
+set(floors core elasticity scene cl sim io experiment metrics calibrate diagnose ensemble)
 add_library(mcdem_engine INTERFACE)
-target_link_libraries(mcdem_engine INTERFACE mcdem_ensemble mcdem_report)
+target_link_libraries(mcdem_engine INTERFACE mcdem_ensemble)
 set_target_properties(mcdem_engine PROPERTIES EXPORT_NAME mcdem)
 set(targets mcdem_engine mcdem_options mcdem_kernel_sources mcdem_version)
 foreach(floor ${floors})

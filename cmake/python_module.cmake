@@ -25,12 +25,13 @@ endif()
 
 file(GLOB sources CONFIGURE_DEPENDS host/python/*.cpp)
 Python3_add_library(mcdem_python MODULE WITH_SOABI ${sources})
-target_link_libraries(mcdem_python PRIVATE mcdem_version mcdem_ensemble mcdem_report mcdem_experiment
+target_link_libraries(mcdem_python PRIVATE mcdem_version mcdem_ensemble mcdem_experiment
   pybind11::headers)
 set_target_properties(mcdem_python PROPERTIES OUTPUT_NAME _engine CXX_VISIBILITY_PRESET hidden
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/python/mcdem)
 file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/host/python
-  host/python/mcdem/*.py host/python/mcdem/*.pyi host/python/mcdem/py.typed)
+  host/python/mcdem/*.py host/python/mcdem/*.pyi host/python/mcdem/py.typed
+  host/python/mcdem/*.js host/python/mcdem/*.css host/python/mcdem/*.jinja)
 foreach(file ${files})
   configure_file(host/python/${file} ${CMAKE_BINARY_DIR}/python/${file} COPYONLY)
 endforeach()

@@ -18,12 +18,11 @@ FLOORS = {
     "metrics": ["core"],
     "calibrate": ["metrics", "core"],
     "diagnose": ["metrics", "experiment", "scene", "core"],
-    "report": ["diagnose", "metrics", "core"],
     "ensemble": ["diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
-    "challenge": ["ensemble", "report", "diagnose", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
-    "cli": ["challenge", "ensemble", "report", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
+    "challenge": ["ensemble", "diagnose", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
+    "cli": ["challenge", "ensemble", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
             "core"],
-    "python": ["ensemble", "report", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
+    "python": ["ensemble", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
                "core"],
 }
 LONGEST_FILE = 400

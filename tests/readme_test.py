@@ -35,8 +35,8 @@ def wrong_table(readme, quickstart, source, program):
     """Runs the scene of scripts/quickstart, without its figures."""
     scene = re.search(r"^build/mcdem run (\S+) --out \S+$", quickstart, re.MULTILINE)[1]
     with tempfile.TemporaryDirectory(prefix="mcdem-readme-") as folder:
-        printed = rows(subprocess.run([program, "run", source / scene, "--out", f"{folder}/run", "--no-figures"],
-                                      text=True, stdout=subprocess.PIPE, check=True).stdout)
+        subprocess.run([program, "run", source / scene, "--out", f"{folder}/run", "--no-figures"], stdout=subprocess.DEVNULL, check=True)
+        printed = rows(subprocess.run([program, "table", f"{folder}/run"], text=True, stdout=subprocess.PIPE, check=True).stdout)
     stated = rows(readme)
     if len(stated) != len(printed):
         yield f"the table has {len(stated) - 1} models, the run {len(printed) - 1}"

@@ -108,7 +108,6 @@ def check_report(reader, program, run):
     page_charts.check_run_charts(reader, page_truth.settings_of(run), {}, 18, {})
     check_diagnosis_charts(reader, diagnosis, reader.folder / "reality")
     page_charts.check_log_buttons(reader)
-    page_charts.check_made_charts(reader)
     page_packing.check_slider(reader, run, (0, 2))
     check_themes(reader)
     page_cell.check_svg(reader, "top_force", ("plate displacement [mm]", "top force [N]", "MC-DEM"))

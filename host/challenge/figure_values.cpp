@@ -7,8 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "report/diagnosis/diagnosis_json.h"
-#include "report/diagnosis/diagnosis_words.h"
+#include "diagnose/decide/diagnosis_json.h"
 
 namespace mcdem::inline challenge {
 namespace {
@@ -58,12 +57,6 @@ std::size_t place_in(const std::vector<std::string>& list, const std::string& na
     return static_cast<std::size_t>(std::ranges::find(list, name) - list.begin());
 }
 
-Json names_json(const std::vector<std::string>& names) {
-    Json words = Json::array();
-    for (const auto& name : names) words.push_back(words_of(name));
-    return words;
-}
-
 /// Number of cases by truth and verdict.
 Json confusion_values(const std::vector<ScoredCase>& cases) {
     std::set<std::string> rows, columns;
@@ -78,10 +71,7 @@ Json confusion_values(const std::vector<ScoredCase>& cases) {
     Json right = Json::array();
     for (std::size_t t = 0; t < truths.size(); ++t)
         if (const auto v = place_in(verdicts, truths[t]); v < verdicts.size()) right.push_back({t, v});
-    return {{"truths", names_json(truths)},
-            {"verdicts", names_json(verdicts)},
-            {"cases", counts},
-            {"right", right}};
+    return {{"truths", truths}, {"verdicts", verdicts}, {"cases", counts}, {"right", right}};
 }
 
 /// Fraction of the cases that are hits, with its interval, in bins of `x_of` with these upper edges; null

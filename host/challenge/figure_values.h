@@ -1,5 +1,5 @@
-// Figures of a challenge as JSON (report/run/figure_values.h): confusion of truth and verdict, detection
-// power, and calibration of stated probabilities.
+// Figures of a challenge as JSON, which host/python/mcdem/figures/challenge.py draws: confusion of truth and
+// verdict, detection power, and calibration of stated probabilities.
 #pragma once
 #include <array>
 #include <nlohmann/json.hpp>

@@ -6,7 +6,7 @@
 
 #include "core/errors.h"
 #include "core/median.h"
-#include "metrics/programmes.h"
+#include "metrics/replicas.h"
 
 namespace mcdem::inline metrics {
 namespace {

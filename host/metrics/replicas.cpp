@@ -111,4 +111,6 @@ int discard_of(const Recording& recording) {
     return error == std::errc{} && discard > 0 ? discard : 0;
 }
 
+bool follows_programme(const Recording& recording) { return has_programme(recording.parameters); }
+
 }  // namespace mcdem::metrics

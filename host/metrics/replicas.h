@@ -21,6 +21,9 @@ Replicas replicas_of(const std::vector<Recording>& recordings);
 /// The run's settings in order of first appearance.
 std::vector<Setting> group_by_setting(const Run& run);
 
+/// Whether the recording followed a [[programme]].
+bool follows_programme(const Recording& recording);
+
 /// Parameter `packing.seed`; empty if unknown (measured data).
 std::string seed_of(const Recording& recording);
 std::vector<std::string> seeds_of(const Replicas& replicas);

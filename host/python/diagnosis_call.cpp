@@ -8,14 +8,13 @@
 #include "core/errors.h"
 #include "core/output_file.h"
 #include "core/version.h"
+#include "diagnose/decide/diagnosis_json.h"
+#include "diagnose/infer/convergence_json.h"
 #include "ensemble/converge_scene.h"
 #include "ensemble/diagnosis/diagnose_experiment.h"
 #include "io/result_folder.h"
 #include "python/bindings.h"
 #include "python/watch.h"
-#include "report/diagnosis/diagnosis_json.h"
-#include "report/diagnosis/diagnosis_page.h"
-#include "report/run/convergence_tables.h"
 
 namespace mcdem::inline python {
 namespace {
@@ -42,7 +41,7 @@ using OneOrSeveral = std::variant<Path, std::vector<Path>>;
 py::object diagnose(const Scene& scene, const OneOrSeveral& experiment, const Path& folder,
                     const std::vector<std::string>& candidates, int replicates, int pairs, int confirmations,
                     double refine, std::uint64_t seed, std::optional<Path> library, const std::string& choice,
-                    bool page, py::object progress) {
+                    py::object progress) {
     Watch watch(std::move(progress));
     DiagnoseOptions options;
     options.folder = folder;
@@ -67,7 +66,6 @@ py::object diagnose(const Scene& scene, const OneOrSeveral& experiment, const Pa
         const Diagnosis diagnosis = diagnose_experiment(device, scene, measured, options);
         const std::string text = diagnosis_json(diagnosis);
         replace_own(folder / "diagnosis.json", FileKind::diagnosis, text);
-        if (page) write_diagnosis_page(diagnosis, folder / "diagnosis.html");
         return text;
     });
 }
@@ -98,22 +96,21 @@ py::object converge(const Scene& scene, const std::filesystem::path& folder, int
 }  // namespace
 
 void bind_diagnosis(py::module_& module) {
-    module.def("diagnose", &diagnose, py::arg("scene"), py::arg("experiment"), py::arg("folder"),
-               py::kw_only(), py::arg("candidates") = std::vector<std::string>{}, py::arg("replicates") = 32,
-               py::arg("pairs") = 8, py::arg("confirmations") = 8, py::arg("refine") = 4.0,
-               py::arg("seed") = 1, py::arg("library") = py::none(), py::arg("device") = "",
-               py::arg("page") = true, py::arg("progress") = py::none(),
-               "Where a scene and an experiment differ, and which effect is consistent with the difference: "
-               "the contents of diagnosis.json as a dict.\n`experiment`: a folder, or a list of those of "
-               "several packings, which "
-               "are diagnosed together. `refine`: the largest factor by which a scene that is not converged "
-               "is refined, "
-               "1: not at all.\n\n"
-               "Writes diagnosis.json and, with `page`, diagnosis.html into `folder`, as `mcdem diagnose` "
-               "does; simulations "
-               "are\nkept there, so that the same call continues after an interruption by Ctrl-C. "
-               "`progress(stage, fraction)` is called\nrepeatedly. host/report/DIAGNOSIS_OUTPUT.md explains "
-               "the keys.");
+    module.def(
+        "diagnose", &diagnose, py::arg("scene"), py::arg("experiment"), py::arg("folder"), py::kw_only(),
+        py::arg("candidates") = std::vector<std::string>{}, py::arg("replicates") = 32, py::arg("pairs") = 8,
+        py::arg("confirmations") = 8, py::arg("refine") = 4.0, py::arg("seed") = 1,
+        py::arg("library") = py::none(), py::arg("device") = "", py::arg("progress") = py::none(),
+        "Where a scene and an experiment differ, and which effect is consistent with the difference: "
+        "the contents of diagnosis.json as a dict.\n`experiment`: a folder, or a list of those of "
+        "several packings, which "
+        "are diagnosed together. `refine`: the largest factor by which a scene that is not converged "
+        "is refined, "
+        "1: not at all.\n\n"
+        "Writes diagnosis.json into `folder`, as `mcdem diagnose` does; simulations "
+        "are\nkept there, so that the same call continues after an interruption by Ctrl-C. "
+        "`progress(stage, fraction)` is called\nrepeatedly. host/diagnose/DIAGNOSIS_OUTPUT.md explains "
+        "the keys.");
     module.def(
         "converge", &converge, py::arg("scene"), py::arg("folder"), py::kw_only(), py::arg("replicas") = 32,
         py::arg("force_limit") = ConvergenceLimits{}.force,

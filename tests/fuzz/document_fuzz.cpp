@@ -7,13 +7,13 @@
 #include "challenge/truth.h"
 #include "core/errors.h"
 #include "core/sha256.h"
+#include "diagnose/decide/diagnosis_json.h"
+#include "diagnose/diagnosis_samples.h"
 #include "diagnose/synthetic_evidence.h"
 #include "ensemble/diagnosis/observation_store.h"
 #include "ensemble/parts/manifest.h"
 #include "fuzz/mutate_json.h"
 #include "fuzz/scratch_folder.h"
-#include "report/diagnosis/diagnosis_json.h"
-#include "report/diagnosis_samples.h"
 
 namespace {
 

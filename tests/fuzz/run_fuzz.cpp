@@ -10,7 +10,7 @@
 #include "io/result_folder.h"
 #include "io/results.h"
 #include "io/synthetic_run.h"
-#include "metrics/model_table.h"
+#include "metrics/replicas.h"
 #include "sim/simulation.h"
 
 /// HDF5 1.10 leaks memory when it reads damaged metadata; these leaks are not checked here.
@@ -39,7 +39,7 @@ void read_with_everything(const std::filesystem::path& path) {
     expect_read_or_refused([&] {
         const Run run = read_run(path);
         csv_text(run);
-        model_table(group_by_setting(run));
+        group_by_setting(run);
     });
     expect_read_or_refused([&] {
         RunReader reader(path);

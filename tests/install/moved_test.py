@@ -1,4 +1,4 @@
-"""An installed program finds its files after it was moved, and names missing ones.
+"""An installed program finds its files after it was moved.
 
 moved_test.py SOURCE BUILD CMAKE [PYTHON]
 """
@@ -28,10 +28,6 @@ def main():
         program = folder / "elsewhere/bin/mcdem"
         done = report(program, folder)
         assert done.returncode == 0 and (folder / "page.html").exists(), done.stderr
-        (folder / "elsewhere/share/mcdem/plotly.js.gz").unlink()
-        refused = report(program, folder)
-        assert refused.returncode == 1 and "install python3-plotly" in refused.stderr, refused.stderr
-        assert str(folder / "elsewhere/share/mcdem") in refused.stderr, refused.stderr
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.h"
-#include "metrics/model_table.h"
 #include "metrics/synthetic.h"
 
 namespace mcdem {
@@ -68,71 +67,6 @@ TEST(Compare, discarding_all_cycles_is_an_error) {
     EXPECT_THROW(compare(group_by_setting(run)[0], {&run.recordings[0]}), InputError);
     EXPECT_THAT(compare(group_by_setting(run)[0], {&measured}).notes,
                 Contains(HasSubstr("no scans after the discarded cycles")));
-}
-
-TEST(ModelTable, ratios_are_over_mc_dem_and_paired_by_seed) {
-    const auto run = synthetic::run({{.model = "independent", .top = 6.45, .scatter = 0.1},
-                                     {.model = "mc_dem", .top = 15, .scatter = 0.1}},
-                                    5);
-    const auto table = model_table(group_by_setting(run));
-    EXPECT_EQ(table.reference, "mc_dem");
-    EXPECT_NEAR(table.displacement, 30e-3, 1e-12);
-    ASSERT_EQ(table.rows.size(), 2u);
-    EXPECT_NEAR(table.rows[0].ratio.value, 0.43, 1e-12);
-    EXPECT_NEAR(table.rows[0].ratio.standard_error, 0, 1e-12);  // equal scatter on both sides
-    EXPECT_GT(table.rows[0].top_force.standard_error, 0.05);
-    EXPECT_DOUBLE_EQ(table.rows[1].ratio.value, 1);
-}
-
-TEST(ModelTable, other_seeds_are_independent) {
-    auto run = synthetic::run(
-        {{.model = "independent", .top = 6, .scatter = 0.1}, {.model = "mc_dem", .top = 15, .scatter = 0.1}},
-        5);
-    for (int i = 5; i < 10; ++i) run.recordings[i].parameters["packing.seed"] = std::to_string(100 + i);
-    EXPECT_GT(model_table(group_by_setting(run)).rows[0].ratio.standard_error, 0.01);
-}
-
-TEST(ModelTable, replicas_that_stopped_early_are_excluded) {
-    auto run = synthetic::run({{.model = "elastic_half_space", .top = 12}, {.model = "mc_dem"}}, 3);
-    run.recordings[0].scans.resize(5);
-    run.recordings[0].failure = Failure{1, 2, "ran away"};
-    const auto table = model_table(group_by_setting(run));
-    EXPECT_EQ(table.rows[0].failed, 1);
-    EXPECT_EQ(table.rows[0].top_force.count, 2);
-    EXPECT_NEAR(table.rows[0].ratio.value, 0.8, 1e-12);
-}
-
-TEST(ModelTable, a_setting_that_stopped_early_shows_its_last_scan) {
-    auto run = synthetic::run({{.model = "independent", .top = 6}, {.model = "mc_dem", .top = 15}}, 2);
-    for (int i : {2, 3}) {
-        run.recordings[i].scans.resize(6);
-        run.recordings[i].failure = Failure{1, 2, "ran away"};
-    }
-    const auto table = model_table(group_by_setting(run));
-    EXPECT_EQ(table.reference, "mc_dem");
-    EXPECT_NEAR(table.displacement, 30e-3, 1e-12);  // of the independent contacts
-    EXPECT_FALSE(table.rows[0].reached);
-    EXPECT_NEAR(table.rows[0].top_force.value, 6, 1e-12);
-    EXPECT_FALSE(table.rows[0].ratio.available());
-    const auto& stopped = table.rows[1];
-    ASSERT_TRUE(stopped.reached);
-    EXPECT_NEAR(*stopped.reached, run.recordings[2].displacement(run.recordings[2].scans[5]), 1e-12);
-    EXPECT_NEAR(stopped.top_force.value, run.recordings[2].scans[5].top_force(), 1e-12);
-    EXPECT_NEAR(stopped.ratio.value, 1, 1e-12);
-}
-
-TEST(ModelTable, reference_is_the_named_one_or_the_first) {
-    const auto run =
-        synthetic::run({{.model = "sphere_to_sphere", .top = 10}, {.model = "independent", .top = 5}}, 1);
-    const auto settings = group_by_setting(run);
-    EXPECT_EQ(model_table(settings).reference, "sphere_to_sphere");
-    EXPECT_NEAR(model_table(settings, "independent").rows[0].ratio.value, 2, 1e-12);
-    try {
-        model_table(settings, "hertz");
-        FAIL() << "an unknown reference must be refused";
-    } catch (const InputError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("\"sphere_to_sphere\", \"independent\"; got \"hertz\""));
-    }
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 """Charts of runs and diagnoses as plotly.js stores them, compared with the data: values, bands, labels, logarithmic
 axes."""
 import dataclasses
-import json
 import re
 
 import numpy as np
@@ -198,38 +197,3 @@ def check_log_buttons(reader):
     assert charts == [chart for chart in LOG_AXES if reader.elements(f"#{chart}")] and "scaling" in charts, charts
     for chart in charts:
         check_log_button(reader, chart, LOG_AXES[chart])
-
-
-HOSTILE = "<a href='x'>&y\n</a>"
-CURVE = {"phase": "load", "x": [1, 2], "y": [3, 4], "standard_error": [0.1, None]}
-SERIES = {"words": HOSTILE, "remark": HOSTILE, "colour": "#123456", "is_reference": False, "slope": 123456.789, "curves": [CURVE]}
-RUN_FIGURE = {"x_label": "time [s]", "y_label": "a number", "series": [SERIES]}
-MAP = {"x_label": "", "colour_label": "", "colour_range": 6, "width": 4.35, "observables": [HOSTILE, "b"],
-       "columns": [{"phase": phase, "displacement_mm": at, "x": x} for phase, at, x in
-                   (("loading", 10, 0.5), ("loading", 20, 1.5), ("unloading", 20, 2.85), ("unloading", 10, 3.85))],
-       "panels": [{"words": "as stated", "cells": [{"row": 0, "column": 0, "z_score": 1, "stands_out": False},
-                                                   {"row": 1, "column": 2, "z_score": -7, "stands_out": True}]},
-                  {"words": "after recalibration", "cells": []}]}
-CANDIDATE = {"words": HOSTILE, "is_named": False, "group": "", "gain": None, "gain_simulated": None, "amplitude": HOSTILE,
-             "probability": "1 %", "explained": "2 %"}
-
-
-def check_made_charts(reader):
-    """Charts of artificial values: texts are escaped, and unknown values are omitted."""
-    def made(kind, values):
-        text = reader.script(f"JSON.stringify(chartOf({json.dumps({'kind': kind, 'values': values})}))")
-        assert "<a" not in text and "&lt;a href='x'&gt;&amp;y &lt;/a&gt;" in text, text
-        return json.loads(text)
-
-    for kind in ("top_force", "coordination", "force_distribution", "pressure_time"):
-        line, = made(kind, RUN_FIGURE)["data"]  # unknown error: no band
-        assert line["y"] == CURVE["y"] and "customdata" not in line, line
-    assert line["hovertemplate"] == "%{x:.4g} s<br>%{y:.4g}", line
-    assert made("scaling", RUN_FIGURE)["data"][-1]["hovertemplate"] == "slope 1.235e+08 /m"
-    where = made("where", MAP)
-    assert where["data"][0]["z"] == [[1, None, None, None, None], [None, None, None, -7, None]], "empty where the phase changes"
-    assert where["data"][0]["text"][0][0].endswith(", loading at 10.00 mm<br>1.00 sigma"), where["data"][0]["text"]
-    assert len(where["layout"]["shapes"]) == 1 and where["data"][1]["text"] == ["-7.0"], where
-    which = made("which", {"rows": [CANDIDATE, {**CANDIDATE, "over_limit": 2, "half_interval": 1, "gain": 3}],
-                           "colour_named": "", "colour_other": "", "gain_label": "gain"})
-    assert [trace["y"] for trace in which["data"]] == [[1], [], [1]], which["data"]

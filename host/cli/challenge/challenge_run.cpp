@@ -8,7 +8,7 @@
 #include "cli/shell/standard_streams.h"
 #include "core/atomic_file.h"
 #include "core/version.h"
-#include "report/diagnosis/diagnosis_json.h"
+#include "diagnose/decide/diagnosis_json.h"
 
 namespace mcdem::inline cli {
 namespace {

@@ -10,11 +10,11 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
+#include "cli/shell/text_table.h"
 #include "core/errors.h"
 #include "core/look.h"
 #include "core/output_file.h"
 #include "io/result_folder.h"
-#include "report/page/text_table.h"
 
 namespace mcdem::inline cli {
 namespace {

@@ -17,7 +17,7 @@
 #include "diagnose/infer/effects.h"
 #include "experiment/instrument.h"
 #include "io/results.h"
-#include "metrics/programmes.h"
+#include "metrics/replicas.h"
 #include "scene/packing/packing_fields.h"
 #include "scene/programme/programme_text.h"
 

@@ -6,12 +6,12 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
+#include "cli/shell/text_table.h"
 #include "core/errors.h"
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/calibrate_scene.h"
 #include "io/result_folder.h"
-#include "report/run/tables.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -22,6 +22,16 @@ struct CalibrateCommand {
     std::string out, device;
     CalibrateOptions options;
 };
+
+/// "0.430 ± 0.012"; without the error if it is unknown. More decimals if fewer than two significant digits
+/// would be left, of the value or of a larger error.
+std::string with_error(const Estimate& estimate, int decimals) {
+    const bool has_error = std::isfinite(estimate.standard_error);
+    const double size = std::max(std::abs(estimate.value), has_error ? estimate.standard_error : 0);
+    if (size > 0) decimals = std::max(decimals, 1 - static_cast<int>(std::floor(std::log10(size))));
+    const std::string value = fmt::format("{:.{}f}", estimate.value, decimals);
+    return has_error ? fmt::format("{} ± {:.{}f}", value, estimate.standard_error, decimals) : value;
+}
 
 void print_calibration(const SceneCalibration& result) {
     TextTable table;

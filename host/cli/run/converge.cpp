@@ -9,9 +9,9 @@
 #include "cli/shell/standard_streams.h"
 #include "core/output_file.h"
 #include "core/version.h"
+#include "diagnose/infer/convergence_json.h"
 #include "ensemble/converge_scene.h"
 #include "io/result_folder.h"
-#include "report/run/convergence_tables.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -47,13 +47,7 @@ void run(ConvergeCommand& command) {
     expect_replaceable_figures(folder, {"convergence"});
     const Convergence convergence = converge(command, scene);
     replace_own(folder / "convergence.json", FileKind::convergence, convergence_json(convergence));
-    print_out("{}\n", to_text(table_of_convergence(convergence), TableFormat::terminal));
-    for (const std::string& line : words_of_convergence(convergence)) print_out("{}\n", line);
-    print_out("wrote\n  {}\n", (folder / "convergence.json").string());
-    for (const auto& file : draw_if_possible([&] {
-             return draw_figures(folder, {{"convergence", convergence_figure_values(convergence)}});
-         }))
-        print_out("  {}\n", file.string());
+    present("present_convergence", {folder.string()});
 }
 
 }  // namespace

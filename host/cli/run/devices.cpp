@@ -3,7 +3,7 @@
 #include "cl/device.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
-#include "report/page/text_table.h"
+#include "cli/shell/text_table.h"
 
 namespace mcdem::inline cli {
 namespace {

@@ -13,13 +13,10 @@
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/version.h"
+#include "diagnose/decide/diagnosis_json.h"
 #include "ensemble/parts/library_parts.h"
 #include "experiment/check_experiment.h"
 #include "io/result_folder.h"
-#include "report/diagnosis/diagnosis_json.h"
-#include "report/diagnosis/diagnosis_page.h"
-#include "report/diagnosis/diagnosis_text.h"
-#include "report/diagnosis/diagnosis_values.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -72,12 +69,7 @@ int run_alone(const DiagnoseCommand& command, const Scene& scene,
     expect_replaceable_figures(folder, {"where", "which", "how_far"});
     const Diagnosis diagnosis = diagnose(command, scene, experiments);
     replace_own(folder / "diagnosis.json", FileKind::diagnosis, diagnosis_json(diagnosis));
-    print_out("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
-    write_diagnosis_page(diagnosis, folder / "diagnosis.html");
-    print_out("  {}\n", (folder / "diagnosis.html").string());
-    for (const auto& file :
-         draw_if_possible([&] { return draw_figures(folder, diagnosis_figure_values(diagnosis)); }))
-        print_out("  {}\n", file.string());
+    present("present_diagnosis", {folder.string(), "page", "figures"});
     return exit_done;
 }
 

@@ -2,26 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/shell/commands.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/python_program.h"
 #include "core/errors.h"
-#include "core/look.h"
-#include "core/make_folder.h"
 #include "core/output_file.h"
-#include "io/result_folder.h"
-#include "io/results.h"
-#include "report/run/figure_values.h"
 
 namespace mcdem::inline cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Larger runs are read into memory only on request.
-constexpr std::uintmax_t max_bytes_read = std::uintmax_t{1} << 30;
-
 const char* const values_file = "figures.json";
+
+void run_python(const std::string& module, const std::vector<std::string>& arguments,
+                const std::string& failed) {
+    const int code = run_python_module(module, arguments);
+    if (code == exit_interrupted) throw Interrupted();
+    if (code != exit_done) throw RunError(fmt::format("{}: Python ended with exit code {}", failed, code));
+}
 
 }  // namespace
 
@@ -40,22 +41,13 @@ std::vector<fs::path> draw_figures(const fs::path& folder, const nlohmann::order
         figures.push_back(folder / (name + ".png"));
     }
     expect_replaceable_figures(folder, names);
-    replace_own(folder / values_file, FileKind::figure_values, figure_file(values));
-    const int code = run_python_module("mcdem.figures", {(folder / values_file).string()});
-    if (code == exit_interrupted) throw Interrupted();
-    if (code != exit_done)
-        throw RunError(fmt::format("{} could not be drawn: Python ended with exit code {}",
-                                   (folder / values_file).string(), code));
+    nlohmann::ordered_json file{{"mcdem_figures", 1}};
+    file.update(values);
+    replace_own(folder / values_file, FileKind::figure_values,
+                file.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    run_python("mcdem.figures", {(folder / values_file).string()},
+               (folder / values_file).string() + " could not be drawn");
     return figures;
-}
-
-std::vector<fs::path> draw_runs(const fs::path& folder, const std::vector<Setting>& settings,
-                                const std::optional<Setting>& reference, const FigureOptions& options) {
-    make_folder(folder);
-    const auto data = figure_data(settings, reference, options);
-    const auto prepared = run_figures(data, options);
-    for (const auto& missing : prepared.missing) spdlog::info("no figure of {}", missing);
-    return draw_figures(folder, figure_values(prepared, data));
 }
 
 std::vector<fs::path> draw_if_possible(const std::function<std::vector<fs::path>()>& draw) {
@@ -67,30 +59,8 @@ std::vector<fs::path> draw_if_possible(const std::function<std::vector<fs::path>
     }
 }
 
-std::vector<fs::path> draw_run(const fs::path& folder) {
-    if (size_of_file(run_file(folder)) > max_bytes_read) {
-        spdlog::info("no figures of so large a run: `mcdem figures {} --out DIR` draws them",
-                     folder.string());
-        return {};
-    }
-    return draw_if_possible([&] {
-        const Run run = read_run(folder, ReadWhat::contacts);
-        return draw_runs(folder, group_by_setting(run), std::nullopt);
-    });
-}
-
-void add_figure_options(CLI::App& command, FigureOptions& figures) {
-    command
-        .add_option("--displacement", figures.distribution_displacement,
-                    "Draw the force distribution at the recorded plate displacement nearest to this one [m]")
-        ->type_name("M")
-        ->check(at_least_zero());
-    command
-        .add_option("--threshold", figures.threshold,
-                    "Contact force below which contacts are not counted in the figure of Z if there is "
-                    "no reference [N]")
-        ->type_name("N")
-        ->check(at_least_zero());
+void present(const std::string& name, const std::vector<std::string>& arguments) {
+    run_python("mcdem.report." + name, arguments, "the results are written, but not shown");
 }
 
 }  // namespace mcdem::cli

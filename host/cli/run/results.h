@@ -1,4 +1,4 @@
-// Loads runs and experiments for comparisons.
+// Loads runs and experiments to which a scene is fitted.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
@@ -8,19 +8,6 @@
 #include "metrics/replicas.h"
 
 namespace mcdem::inline cli {
-
-/// Several runs and their settings. Settings point into the runs, so the object can be moved but not copied.
-struct LoadedRuns {
-    LoadedRuns() = default;
-    LoadedRuns(LoadedRuns&&) = default;
-    LoadedRuns& operator=(LoadedRuns&&) = default;
-    std::vector<Run> runs;
-    std::vector<Setting> settings;
-};
-
-/// Each path is a result folder or file. If there are several runs, the label of every setting begins with
-/// that of its run.
-LoadedRuns load_runs(const std::vector<std::string>& paths, ReadWhat what);
 
 struct ReferenceOptions {
     std::vector<std::string> paths;  ///< experiment folders, result folders or files
@@ -39,7 +26,5 @@ struct LoadedReference {
     Setting setting;
 };
 LoadedReference load_reference(const ReferenceOptions& options, ReadWhat what);
-
-void add_runs_option(CLI::App& command, std::vector<std::string>& paths);
 
 }  // namespace mcdem::cli

@@ -20,9 +20,7 @@
 #include "io/checkpoint.h"
 #include "io/result_folder.h"
 #include "io/results.h"
-#include "metrics/model_table.h"
-#include "metrics/programmes.h"
-#include "report/run/tables.h"
+#include "metrics/replicas.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -65,11 +63,6 @@ RunSummary run_with_progress(Device& device, const Scene& scene, const RunComman
     return run_scene(device, scene, options);
 }
 
-bool models_vary(const ModelTable& table) {
-    return std::ranges::any_of(table.rows,
-                               [&](const ModelRow& row) { return row.model != table.rows.front().model; });
-}
-
 void print_summary(const Run& run, const RunSummary& summary, std::size_t failed) {
     const std::size_t replicas = run.recordings.size();
     print_out("{}: {} of {} replica{} done", run.name, replicas - failed, replicas, replicas == 1 ? "" : "s");
@@ -78,12 +71,6 @@ void print_summary(const Run& run, const RunSummary& summary, std::size_t failed
         print_out("; {:.1f} million grain-steps in {} ({:.1f} million/s)", summary.grain_steps * 1e-6,
                   duration_text(summary.seconds), summary.grain_steps * 1e-6 / summary.seconds);
     print_out("\n");
-    const auto models = model_table(with_programme(group_by_setting(run), false));
-    if (models_vary(models))
-        print_out("\n{}", to_text(table_of_models(models), TableFormat::terminal));
-    else if (models.rows.size() == 1 && models.rows.front().top_force.available())
-        print_out("force on the plate: {} N at {:.2f} mm\n", with_error(models.rows.front().top_force, 2),
-                  1e3 * models.rows.front().reached.value_or(models.displacement));
 }
 
 void warn_of_no_contact(const Run& run) {
@@ -121,11 +108,21 @@ void warn_of_unsettled(const Run& run) {
             unsettled, all);
 }
 
-void print_paths(const RunCommand& command, const std::vector<std::filesystem::path>& figures) {
-    const std::filesystem::path folder = command.out;
+void print_paths(const std::filesystem::path& folder) {
     print_out("\nwrote\n");
     for (const auto& file : {run_file(folder), folder / "plate.csv"}) print_out("  {}\n", file.string());
-    for (const auto& file : figures) print_out("  {}\n", file.string());
+}
+
+/// The table of forces, the figures and the paths.
+void present_run(const std::filesystem::path& folder) {
+    try {
+        present("present_run", {folder.string()});
+    } catch (const Interrupted&) {
+        throw;
+    } catch (const std::exception& error) {
+        spdlog::warn("no table and no figures: {}", error.what());
+        print_paths(folder);
+    }
 }
 
 /// Reports a run with results in the folder; returns the exit code.
@@ -136,9 +133,7 @@ int report_run(const RunCommand& command, const RunSummary& summary) {
     print_summary(run, summary, failed);
     warn_of_no_contact(run);
     warn_of_unsettled(run);
-    std::vector<std::filesystem::path> figures;
-    if (!command.no_figures) figures = draw_run(command.out);
-    print_paths(command, figures);
+    command.no_figures ? print_paths(command.out) : present_run(command.out);
     if (failed < run.recordings.size()) return exit_done;
     spdlog::error("all replicas stopped early");
     return exit_failed;
@@ -206,7 +201,7 @@ void add_run(CLI::App& app, int& exit_code) {
     add_scene_options(*sub, command->scene);
     sub->add_option("--out", command->out, "Result folder; created if missing")->required()->type_name("DIR");
     sub->add_flag("--resume", command->resume, "Continue the interrupted run in DIR");
-    sub->add_flag("--no-figures", command->no_figures, "Do not draw figures at the end");
+    sub->add_flag("--no-figures", command->no_figures, "Do not draw figures at the end, and print no table");
     add_sharing_options(*sub, command->sharing, command->device);
     sub->add_option_function<std::size_t>(
            "--part-replicas", [command](std::size_t replicas) { command->cut.part_replicas = replicas; },

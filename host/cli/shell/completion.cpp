@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "cli/shell/commands.h"
+#include "cli/shell/python_program.h"
 #include "cli/shell/standard_streams.h"
 #include "scene/read/keys.h"
 
@@ -46,13 +47,19 @@ void offer_values(const CLI::Option& option, const std::string& word) {
 /// The candidates for the last word of a command line. `:files` and `:folders` stand for those that the shell
 /// finds.
 void complete(const CLI::App& app, std::vector<std::string> words) {
+    if (words.size() > 1 && is_python_command(words.front())) {
+        words.insert(words.begin(), "complete");
+        run_python_module("mcdem.run_command", words);
+        return;
+    }
     const std::string word = words.empty() ? "" : words.back();
     if (!words.empty()) words.pop_back();
     const CLI::App* command = &app;
     for (const std::string& name : words)
         for (const CLI::App* one : listed_commands(*command))
             if (one->get_name() == name) command = one;
-    const auto options = command->get_options([](const CLI::Option* one) { return !one->get_positional(); });
+    const auto options = command->get_options(
+        [](const CLI::Option* one) { return !one->get_positional() && !one->get_group().empty(); });
     for (const CLI::Option* option : options)
         if (option->get_items_expected_max() > 0 && !words.empty() && option->check_name(words.back()))
             return offer_values(*option, word);

@@ -1,4 +1,4 @@
-// Results of a diagnosis: the content of diagnosis.json and of the page (host/report/DIAGNOSIS_OUTPUT.md).
+// Results of a diagnosis: the content of diagnosis.json and of the page (host/diagnose/DIAGNOSIS_OUTPUT.md).
 #pragma once
 #include <array>
 #include <limits>

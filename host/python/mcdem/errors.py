@@ -1,4 +1,5 @@
 """Errors that are reported to the user (host/core/errors.h)."""
+from collections.abc import Sequence
 
 INTERRUPTED = 130  # exit code of the program
 
@@ -6,7 +7,7 @@ INTERRUPTED = 130  # exit code of the program
 class InputError(ValueError):
     """Invalid user input (exit code 2). Contains all problems: where, what must be, what was got."""
 
-    def __init__(self, problems):
+    def __init__(self, problems: str | Sequence[str]) -> None:
         self.problems = [problems] if isinstance(problems, str) else list(problems)
         super().__init__("\n".join(self.problems))
 

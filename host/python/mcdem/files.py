@@ -1,20 +1,23 @@
-"""Atomic file writes, and protection of existing files."""
+"""Atomic file writes."""
 import contextlib
 import fcntl
 import os
 import pathlib
 import secrets
 import shutil
+import stat
 import tempfile
+from collections.abc import Iterator
+from typing import BinaryIO
 
-from .errors import InputError
-from .look import is_file, is_there
+from .errors import InputError, RunError
+from .look import Path
 
-HEAD = 1 << 16  # bytes of a file by which its kind is recognised
+INTACT = "; the file may be intact: remove the cause and try again"
 unfinished: set[str | pathlib.Path] = set()  # paths of temporary files and folders
 
 
-def remove_unfinished():
+def remove_unfinished() -> None:
     """When the command is ended in the middle of its work (program.py)."""
     for path in list(unfinished):
         shutil.rmtree(path, ignore_errors=True)
@@ -23,7 +26,7 @@ def remove_unfinished():
 
 
 @contextlib.contextmanager
-def temporary_folder():
+def temporary_folder() -> Iterator[pathlib.Path]:
     """A folder of this user alone, for as long as the context lasts."""
     with tempfile.TemporaryDirectory(prefix="mcdem-") as folder:
         unfinished.add(folder)
@@ -33,7 +36,7 @@ def temporary_folder():
             unfinished.discard(folder)
 
 
-def read_whole(file):
+def read_whole(file: Path) -> bytes:
     """The file's bytes. An OSError names the file, also one of reading."""
     try:
         return pathlib.Path(file).read_bytes()
@@ -42,7 +45,7 @@ def read_whole(file):
 
 
 @contextlib.contextmanager
-def new_file(file):
+def new_file(file: Path) -> Iterator[BinaryIO]:
     """A temporary file to write bytes to, which is then flushed to disk and renamed. An OSError names the file."""
     file = pathlib.Path(file)
     temporary = file.with_name(f"{file.name}.{secrets.token_hex(8)}.tmp")
@@ -65,21 +68,30 @@ def new_file(file):
         unfinished.discard(temporary)
 
 
-def write_whole(file, content):
+def write_whole(file: Path, content: bytes) -> None:
     """Writes bytes by new_file."""
     with new_file(file) as out:
         out.write(content)
 
 
-def expect_replaceable(file, what, begins, holds=b""):
-    """Raises InputError unless the path is free, or holds an empty file or `what` mcdem wrote, which has these marks in its head."""
-    problem = None
-    if is_file(file):
-        with open(file, "rb") as there:
-            head = there.read(HEAD)
-        if head and not (head.startswith(begins) and holds in head):
-            problem = f"is not {what}"
-    elif is_there(file):
-        problem = "exists and is not a regular file"
-    if problem:
-        raise InputError(f"{file}: {problem}; it is not replaced: give another path (--out), or remove it first")
+def expect_regular(path: str) -> None:
+    """Without waiting for the writer of a pipe."""
+    try:
+        mode = os.stat(path).st_mode
+        if stat.S_ISREG(mode):
+            os.close(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC))
+            return
+    except (FileNotFoundError, NotADirectoryError):
+        raise InputError(f"{path}: no such file") from None
+    except OSError as error:
+        raise RunError(f"{path}: cannot be opened: {error.strerror}{INTACT}") from error
+    if stat.S_ISSOCK(mode):
+        raise InputError(f"{path}: is a socket or device; give a file")
+    raise InputError(f"{path}: is a folder; give a file" if stat.S_ISDIR(mode) else f"{path}: is a pipe or device; give a file")
+
+
+def read_input(file: Path) -> bytes:
+    """The bytes of a file that the user names. Raises InputError if it is not there or no file, RunError if it cannot be opened, and
+    OSError with its name if it cannot be read."""
+    expect_regular(os.fspath(file))
+    return read_whole(file)

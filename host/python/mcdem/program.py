@@ -12,6 +12,9 @@ import sys
 import time
 import traceback
 import warnings
+from collections.abc import Callable
+from types import FrameType
+from typing import NoReturn, cast
 
 from .errors import INTERRUPTED, InputError, RunError
 from .files import remove_unfinished
@@ -29,45 +32,45 @@ BLANKS = dict.fromkeys(CONTROL, " ") | {ord("\n"): "\n", ord("\t"): "\t"}
 class Shown(io.TextIOWrapper):
     """A stream to the user, with blanks for control characters: names come from files of others."""
 
-    def write(self, text):
+    def write(self, text: str) -> int:
         super().write(text.translate(BLANKS))
         return len(text)
 
 
-def shown(stream):
+def shown(stream: io.TextIOWrapper) -> Shown:
     lines = stream.line_buffering
     return Shown(stream.detach(), encoding="utf-8", errors="surrogateescape", line_buffering=lines)
 
 
-def is_debugged():
+def is_debugged() -> bool:
     return bool(os.environ.get("MCDEM_DEBUG"))
 
 
-def say(text):
+def say(text: object) -> None:
     with contextlib.suppress(OSError):  # nobody is left to be told
         for line in str(text).rstrip("\n").split("\n"):
             print(f"mcdem: {line}", file=sys.stderr)
 
 
-def end_at_once(number, frame):
+def end_at_once(number: int, frame: FrameType | None) -> NoReturn:
     """Ends the command. An exception would not do: in the middle of an import or of a callback of a library it becomes another one,
     or is lost."""
     remove_unfinished()
     os._exit(INTERRUPTED)
 
 
-def handle_signals(handler):
+def handle_signals(handler: Callable[[int, FrameType | None], object]) -> None:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:  # nohup
             signal.signal(number, handler)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # python_program.cpp holds it back until here
 
 
-def raise_when_interrupted():
+def raise_when_interrupted() -> None:
     """From now on the first signal raises KeyboardInterrupt: for a command that waits for others and has to end them."""
-    first = []
+    first = list[float]()
 
-    def interrupt(number, frame):
+    def interrupt(number: int, frame: FrameType | None) -> None:
         if not first:
             first.append(time.monotonic())
             raise KeyboardInterrupt
@@ -77,33 +80,37 @@ def raise_when_interrupted():
     handle_signals(interrupt)
 
 
-def exit_code_of(error):
-    """Prints the error and returns its exit code."""
+def message_of(error: BaseException) -> str:
+    """What the user is told of an error: one line for each problem."""
     if isinstance(error, InputError):
-        for problem in error.problems:
-            say(problem)
-        return 2
-    if isinstance(error, KeyboardInterrupt):
-        return INTERRUPTED
+        return "\n".join(map(str, error.problems))
     if isinstance(error, ModuleNotFoundError) and error.name and not error.name.startswith("mcdem"):
         name = error.name.split(".")[0]
-        say(f"the Python package {name} is not there for {sys.executable}: install {PACKAGES.get(name, f'python3-{name}')}, "
-            "or name a Python 3 that has it by MCDEM_PYTHON")
-    elif isinstance(error, RunError):
-        say(error)
-    elif isinstance(error, MemoryError):
-        say("not enough memory")
-    elif isinstance(error, OSError) and (error.strerror or error.args):
-        say(f"{error.filename}: {error.strerror}" if error.filename else error.strerror or error)
-    else:
-        what = " ".join(f"{type(error).__name__} {error}".split())
-        say(f"internal error: {what}; please report it, with what MCDEM_DEBUG=1 shows")
+        return (f"the Python package {name} is not there for {sys.executable}: install {PACKAGES.get(name, f'python3-{name}')}, "
+                "or name a Python 3 that has it by MCDEM_PYTHON")
+    if isinstance(error, RunError):
+        return str(error)
+    if isinstance(error, MemoryError):
+        return "not enough memory"
+    if isinstance(error, OSError) and (error.strerror or error.args):
+        return f"{error.filename}: {error.strerror}" if error.filename else str(error.strerror or error)
+    what = " ".join(f"{type(error).__name__} {error}".split())
+    return f"internal error: {what}; please report it, with what MCDEM_DEBUG=1 shows"
+
+
+def exit_code_of(error: BaseException) -> int:
+    """Prints the error and returns its exit code."""
+    if isinstance(error, KeyboardInterrupt):
+        return INTERRUPTED
+    say(message_of(error))
+    if isinstance(error, InputError):
+        return 2
     if is_debugged():
         traceback.print_exception(error)
     return 1
 
 
-def run(module, arguments):
+def run(module: str, arguments: list[str]) -> int:
     sys.argv = [module, *arguments]
     try:
         runpy.run_module(module, run_name="__main__")
@@ -119,7 +126,7 @@ def run(module, arguments):
     return 0
 
 
-def flush(exit_code):
+def flush(exit_code: int) -> int:
     """The exit code after all output is flushed."""
     if sys.stdout.closed:
         return exit_code
@@ -135,9 +142,9 @@ def flush(exit_code):
         return max(exit_code, 1)
 
 
-def main():
+def main() -> int:
     handle_signals(end_at_once)
-    sys.stdout, sys.stderr = shown(sys.stdout), shown(sys.stderr)
+    sys.stdout, sys.stderr = (shown(cast(io.TextIOWrapper, stream)) for stream in (sys.stdout, sys.stderr))
     if not is_debugged():  # what libraries say to programmers
         warnings.simplefilter("ignore")
         sys.unraisablehook = lambda _: None

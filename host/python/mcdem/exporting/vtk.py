@@ -7,7 +7,8 @@ import h5py
 import numpy as np
 
 from ..errors import InputError
-from ..files import expect_replaceable, write_whole
+from ..files import write_whole
+from ..outputs import Kind, expect_replaceable
 from ..look import is_file, is_link, is_there
 from .run_file import PERIODIC, PLATE, Contacts
 
@@ -69,7 +70,7 @@ def export_replica(replica, folder, is_chosen):
                      "forces": forces_grid(contacts), "walls": walls_grid(scan)}
             for what, grid in grids.items():
                 file = folder / f"{what}_{scan.frame:06}.hdf"
-                expect_replaceable(file, "an export", b"\x89HDF\r\n", b"VTKHDF")
+                expect_replaceable(file, Kind("an export", b"\x89HDF\r\n", b"VTKHDF"))
                 if is_there(file) and file.stat().st_size > 0 and not is_own(file):
                     raise InputError(f"{file}: is not an export; it is not replaced: give another path (--out), or remove it first")
                 write_whole(file, grid_bytes(scan, *grid))

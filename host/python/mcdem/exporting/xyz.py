@@ -3,7 +3,8 @@ import itertools
 
 import numpy as np
 
-from ..files import expect_replaceable, new_file
+from ..files import new_file
+from ..outputs import Kind, expect_replaceable
 from .run_file import Contacts
 
 GUIDE_NAME = "OVITO.txt"
@@ -44,8 +45,8 @@ def export_replica(replica, folder, is_chosen):
     if first is None:
         return 0
     xyz, dump = (folder / (replica.file_name + ending) for ending in (".xyz", ".contacts.dump"))
-    expect_replaceable(xyz, "an export", b"", PROPERTIES.encode())
-    expect_replaceable(dump, "an export", b"ITEM: TIMESTEP\n", ENTRIES.encode())
+    expect_replaceable(xyz, Kind("an export", b"", PROPERTIES.encode()))
+    expect_replaceable(dump, Kind("an export", b"ITEM: TIMESTEP\n", ENTRIES.encode()))
     with new_file(xyz) as grains_out, new_file(dump) as contacts_out:
         for scan in itertools.chain([first], scans):
             contacts = Contacts(scan)

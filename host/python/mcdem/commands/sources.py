@@ -1,0 +1,109 @@
+"""Options that name runs, references and figures, and what they load."""
+import argparse
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from ..errors import InputError
+from ..observe.replicas import Setting, group_by_setting, model_of
+from ..results import ContactModel, Recording, Run, read_run
+from ..results.folder import is_there
+from .command_line import at_least_zero, whole_at_least_zero
+
+
+def add_runs_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("RUN", nargs="+", help="Result folders or files, of finished or running simulations")
+
+
+def add_reference_options(parser: argparse.ArgumentParser, name: str, text: str, required: bool = False) -> None:
+    """The option `name`, which load_reference gets as `paths`, and those of the setting and the discarded cycles."""
+    parser.add_argument(name, metavar="DIR", action="append", required=required, help=text)
+    parser.add_argument("--setting", metavar="LABEL", default="",
+                        help="Setting of the reference run to compare with, if it has several (default: mc_dem)")
+    parser.add_argument("--discard", metavar="CYCLES", type=whole_at_least_zero, default=0,
+                        help="Number of first cycles of the experiment to leave out; runs state their own as protocol.discard")
+
+
+def add_figure_options(parser: argparse.ArgumentParser) -> None:
+    """Fields of FigureOptions."""
+    parser.add_argument("--displacement", metavar="M", type=at_least_zero, default=0.018, dest="distribution_displacement",
+                        help="Draw the force distribution at the recorded plate displacement nearest to this one [m]")
+    parser.add_argument("--threshold", metavar="N", type=at_least_zero, default=0.0,
+                        help="Contact force below which contacts are not counted in the figure of Z if there is no reference [N]")
+
+
+@dataclass(frozen=True)
+class LoadedRuns:
+    """Several runs and their settings."""
+
+    runs: list[Run]
+    settings: list[Setting]
+
+
+def load_runs(paths: Sequence[str], contacts: bool = False, positions: bool = False) -> LoadedRuns:
+    """Each path is a result folder or file.
+
+    If there are several runs, the label of every setting begins with that of its run. Raises InputError, RunError.
+    """
+    runs = [read_run(path, contacts=contacts, positions=positions) for path in paths]
+    prefixes = [name + ": " for name in names_of(paths)] if len(paths) > 1 else [""]
+    return LoadedRuns(runs, [replace(setting, label=prefix + setting.label)
+                             for run, prefix in zip(runs, prefixes, strict=True) for setting in group_by_setting(run)])
+
+
+def names_of(paths: Sequence[str]) -> list[str]:
+    """Unique names of the runs: the folders' names, or whole paths if those are not unique."""
+    names = [_short_name(path) for path in paths]
+    return [path if names.count(name) > 1 else name for path, name in zip(paths, names, strict=True)]
+
+
+def _short_name(path: str) -> str:
+    """The folder's name, also for "out/first/" and "out/first/run.h5"."""
+    whole = os.path.normpath(path)
+    return os.path.basename(os.path.dirname(whole) if os.path.basename(whole) == "run.h5" else whole)
+
+
+@dataclass(frozen=True)
+class LoadedReference:
+    """All replicas of the reference as one setting for comparisons."""
+
+    runs: list[Run]
+    setting: Setting
+
+
+def load_reference(paths: Sequence[str], setting: str = "", discard: int = 0, contacts: bool = False) -> LoadedReference:
+    """Experiment folders, result folders or files. Metrics ignore the first `discard` cycles of an experiment.
+
+    `setting`: of a run with several; default: mc_dem, if it exists. Raises InputError, RunError.
+    """
+    runs, measured, settings = list[Run](), list[bool](), list[Setting]()
+    for path in paths:
+        measured.append(is_there(os.path.join(path, "experiment.toml")))
+        if measured[-1]:
+            from ..results.experiment import read_experiment
+            recording = read_experiment(path)
+            recording = replace(recording, parameters=recording.parameters | {"protocol.discard": str(discard)})
+            runs.append(Run(recording.label, "", "", "", "", (recording,)))
+        else:
+            runs.append(read_run(path, contacts=contacts))
+    for path, run, is_measured in zip(paths, runs, measured, strict=True):
+        settings.append(Setting(run.name, run.recordings) if is_measured else chosen_setting(run, setting, path, "--setting"))
+    replicas: list[Recording] = [replica for one in settings for replica in one.replicas]
+    return LoadedReference(runs, Setting(", ".join(one.label for one in settings), tuple(replicas)))
+
+
+def chosen_setting(run: Run, label: str, where: str, option: str) -> Setting:
+    """The setting with this label; empty: the only one, or that of mc_dem. Raises InputError, which names `where` and `option`."""
+    settings = group_by_setting(run)
+    known = ", ".join(setting.label for setting in settings)
+    for setting in settings:
+        if setting.label == label:
+            return setting
+    if label:
+        raise InputError(f"{option}: must be one of {where}'s: {known or 'it has one, without a label'}; got {label}")
+    if len(settings) == 1:
+        return settings[0]
+    for setting in settings:
+        if model_of(setting.replicas) == ContactModel.mc_dem:
+            return setting
+    raise InputError(f"{where}: holds several settings; choose one with {option}, of {known}")

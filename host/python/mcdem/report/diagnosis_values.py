@@ -1,0 +1,143 @@
+"""Values of the figures of a diagnosis, as figures.json has them: where, which and how_far. None for unknown numbers."""
+from dataclasses import dataclass
+from math import ceil, isfinite
+from typing import Any
+
+from .diagnosis import Cause, Diagnosis, GapReduction, WhereCell
+from .diagnosis_where import SAME_DISPLACEMENT_MM, stands_out
+from .diagnosis_words import amount_with_error, percent, words_of
+from .verdict import VerdictWords, verdict_words
+
+# Colour-blind readers can distinguish blue and orange.
+NAMED, OTHER, BEFORE, AFTER, FAINT = "#D55E00", "#6F9BBF", "#2B87C8", "#D55E00", "#999999"
+
+PHASE_GAP = 0.35  # between loading and unloading [column widths]
+SIGMAS_90 = 1.6449  # half width of a 90 % interval
+
+Values = dict[str, Any]
+
+
+def diagnosis_figure_values(diagnosis: Diagnosis) -> Values:
+    """Of the figures that there are."""
+    values = {}
+    if any(isfinite(cell.z_score) and isfinite(cell.displacement_mm) for cell in diagnosis.cells):
+        values["where"] = _where(diagnosis)
+    if diagnosis.ranking:
+        values["which"] = _which(diagnosis)
+    if diagnosis.shrink and diagnosis.shrink.before > 0:
+        values["how_far"] = _how_far(diagnosis.shrink, verdict_words(diagnosis))
+    return values
+
+
+def _or_none(value: float | None) -> float | None:
+    return None if value is None or not isfinite(value) else value
+
+
+@dataclass(frozen=True)
+class Column:
+    """Column of the figure "where"; its rows are observables."""
+    phase: str
+    displacement_mm: float
+    x: float  # of the centre; columns have width 1, phases are separated by PHASE_GAP
+
+    def holds(self, cell: WhereCell) -> bool:
+        return self.phase == cell.phase and abs(self.displacement_mm - cell.displacement_mm) < SAME_DISPLACEMENT_MM
+
+
+def _in_time(cell: WhereCell) -> tuple[int, str, float]:
+    """Order of the measurement: loading, then unloading."""
+    order = {"load": 0, "unload": 1}.get(cell.phase, 2)
+    return order, cell.phase, -cell.displacement_mm if cell.phase == "unload" else cell.displacement_mm
+
+
+def _columns_of(cells: list[WhereCell]) -> tuple[list[Column], float]:
+    """The columns in the order of the measurement, and their total width."""
+    columns: list[Column] = []
+    width = 0.
+    for cell in sorted(cells, key=_in_time):
+        if columns and columns[-1].holds(cell):
+            continue
+        if columns and columns[-1].phase != cell.phase:
+            width += PHASE_GAP
+        columns.append(Column(cell.phase, cell.displacement_mm, width + 0.5))
+        width += 1
+    return columns, width
+
+
+def _where(diagnosis: Diagnosis) -> Values:
+    cells = [cell for cell in diagnosis.cells if isfinite(cell.displacement_mm)]
+    observables = list(dict.fromkeys(cell.observable for cell in cells))
+    columns, width = _columns_of(cells)
+    row = {observable: k for k, observable in enumerate(observables)}
+    place = {(cell.phase, cell.displacement_mm): next(k for k, column in enumerate(columns) if column.holds(cell)) for cell in cells}
+
+    def panel(words: str, refitted: bool) -> Values:
+        scores = [(cell, cell.z_score_refitted if refitted else cell.z_score) for cell in cells]
+        return {"words": words, "cells": [
+            {"row": row[cell.observable], "column": place[cell.phase, cell.displacement_mm], "z_score": z,
+             "stands_out": stands_out(diagnosis, cell, refitted)} for cell, z in scores if isfinite(z)]}
+
+    largest = max((abs(cell.z_score) for cell in cells if isfinite(cell.z_score)), default=0)
+    return {"x_label": "plate displacement [mm]", "colour_label": "measured minus simulated [sigma of the noise]",
+            # Outliers must not hide all others, and noise must not look like a gap.
+            "colour_range": min(max(float(ceil(largest)), 6.), 8.), "width": width,
+            "observables": [words_of(observable) for observable in observables],
+            "columns": [{"phase": column.phase + "ing" if column.phase else "whole cycle", "displacement_mm": column.displacement_mm,
+                         "x": column.x} for column in columns],
+            "panels": [panel("as stated", False), panel("after recalibration", True)]}
+
+
+def group_letters(ranking: tuple[Cause, ...]) -> list[str]:
+    """Candidates that these data cannot tell apart share a letter: "A", "AB", empty where one stands alone. By place in the ranking."""
+    groups = list(dict.fromkeys(frozenset(cause.group) for cause in ranking))
+    groups = [group for group in groups if len(group) > 1 and not any(group < other for other in groups)]
+    alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+    return ["".join(alphabet[k % len(alphabet)] for k, group in enumerate(groups) if cause.effect in group) for cause in ranking]
+
+
+def _which(diagnosis: Diagnosis) -> Values:
+    named = verdict_words(diagnosis).named
+    # Detection limits make amplitudes with different units comparable.
+    limits = {limit.effect: limit.minimum_amplitude for limit in reversed(diagnosis.detection_limits)}
+    rows = []
+    for cause, letters in zip(diagnosis.ranking, group_letters(diagnosis.ranking)):
+        rows.append({"effect": cause.effect, "words": words_of(cause.effect), "is_named": cause.effect in named, "group": letters,
+                     "gain": _or_none(cause.score), "gain_simulated": _or_none(cause.confirmed_score),
+                     "amplitude": amount_with_error(cause.amplitude, cause.amplitude_error, cause.unit),
+                     "probability": percent(cause.confidence)})
+        limit = limits.get(cause.effect, 0)
+        if limit > 0 and isfinite(limit):
+            rows[-1] |= {"over_limit": _or_none(cause.amplitude / limit),
+                         "half_interval": _or_none(SIGMAS_90 * cause.amplitude_error / limit)}
+    return {"gain_label": "gain in log likelihood", "over_limit_label": "fitted amplitude / detection limit", "colour_named": NAMED,
+            "colour_other": OTHER, "rows": rows}
+
+
+def _forces(shrink: GapReduction, words: VerdictWords) -> Values | None:
+    """At the displacements at which all forces are known."""
+    rows = [(row.displacement_mm, row.experiment_N, row.before_N, row.after_N) for row in shrink.top_force]
+    rows = [row for row in rows if all(map(isfinite, row))]
+    if len(rows) < 2:
+        return None
+    x, experiment, before, after = map(list, zip(*rows))
+    first, last = shrink.fitted_displacement_mm
+    return {"x_label": "plate displacement [mm]", "y_label": "top force [N]", "x": x, "experiment": experiment, "before": before,
+            "after": after, "words_before": "simulated before", "words_after": words.after, "colour_before": BEFORE, "colour_after": AFTER,
+            **({"fitted": [first, last]} if first != last and isfinite(first + last) else {})}
+
+
+def _how_far(shrink: GapReduction, words: VerdictWords) -> Values:
+    bars: list[Values] = []
+
+    def add(what: str, colour: str, reduction: float) -> None:
+        bars.append({"words": what, "colour": colour, "gap_left": _or_none((1 - reduction) * 100)})
+
+    add("before", BEFORE, 0)
+    add("after" if shrink.confirmed is None else "after, predicted", AFTER, shrink.fraction)
+    low, high = shrink.interval
+    if isfinite(low) and isfinite(high):
+        bars[-1]["interval"] = [(1 - high) * 100, (1 - low) * 100]
+    if shrink.confirmed is not None:
+        add("after, simulated", AFTER, shrink.confirmed)
+    add("placebo", FAINT, shrink.placebo)
+    return {"gap_label": "gap left in held-out data [%]", "forces": _forces(shrink, words), "bars": bars}

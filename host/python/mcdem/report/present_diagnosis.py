@@ -1,0 +1,59 @@
+"""Prints a diagnosis and writes what shows it beside diagnosis.json: python3 -m mcdem.report.present_diagnosis FOLDER [page] [figures]."""
+import json
+import os
+import sys
+
+from .draw import draw_figures, draw_if_possible
+from ..files import read_whole
+from ..outputs import DIAGNOSIS, replace_own
+from .diagnosis import Diagnosis, diagnosis_of
+from .diagnosis_text import diagnosis_text, verdict_sentence
+from .diagnosis_values import diagnosis_figure_values
+
+
+FILE = "diagnosis.json"
+
+
+def present(folder: str | os.PathLike[str], page: bool = True, figures: bool = True) -> None:
+    """Prints the text and the files that are there, writes diagnosis.html and figures, and adds the verdict's sentence to
+    diagnosis.json if it lacks it. Raises InputError, RunError and OSError; figures that cannot be drawn are only reported."""
+    diagnosis = completed(folder)
+    print(f"{diagnosis_text(diagnosis)}\nwrote\n  {os.path.join(folder, FILE)}", flush=True)
+    if page:
+        print(f"  {write_page(diagnosis, folder)}", flush=True)
+    if figures:
+        for figure in draw_if_possible(lambda: draw_figures(os.fspath(folder), diagnosis_figure_values(diagnosis))):
+            print(f"  {figure}")
+
+
+def completed(folder: str | os.PathLike[str]) -> Diagnosis:
+    """The diagnosis in the folder; its diagnosis.json has the verdict's sentence afterwards. Raises InputError, RunError, OSError."""
+    file = os.path.join(folder, FILE)
+    content = read_whole(file)
+    diagnosis = diagnosis_of(content, file)
+    _add_sentence(file, content, diagnosis)
+    return diagnosis
+
+
+def write_page(diagnosis: Diagnosis, folder: str | os.PathLike[str]) -> str:
+    """Writes diagnosis.html and returns its path. Raises InputError, RunError."""
+    from .diagnosis_page import write_diagnosis_page
+    page = os.path.join(folder, "diagnosis.html")
+    write_diagnosis_page(diagnosis, page)
+    return page
+
+
+def _add_sentence(file: str, content: bytes, diagnosis: Diagnosis) -> None:
+    document = json.loads(content.decode("utf-8-sig"))
+    if "sentence" in document:
+        return
+    written = {}
+    for key, value in document.items():  # at its documented place
+        written[key] = value
+        if key == "seconds":
+            written["sentence"] = verdict_sentence(diagnosis)
+    replace_own(file, DIAGNOSIS, (json.dumps(written, indent=2, ensure_ascii=False) + "\n").encode())
+
+
+if __name__ == "__main__":
+    present(sys.argv[1], "page" in sys.argv[2:], "figures" in sys.argv[2:])
