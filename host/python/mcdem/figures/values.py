@@ -1,4 +1,4 @@
-"""Reads figures.json, which the commands write (host/report/run/figure_values.h)."""
+"""Reads figures.json, which the commands write (mcdem/report/figure_values.py)."""
 import json
 import pathlib
 

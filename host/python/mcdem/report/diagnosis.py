@@ -1,4 +1,4 @@
-"""Results of a diagnosis, as in diagnosis.json. host/report/DIAGNOSIS_OUTPUT.md explains the keys, which the fields are named after.
+"""Results of a diagnosis, as in diagnosis.json. host/diagnose/DIAGNOSIS_OUTPUT.md explains the keys, which the fields are named after.
 
 What files of earlier versions lack has a default value. Amplitudes are in their own `unit` (SI; empty: a pure number).
 """
