@@ -53,8 +53,8 @@ TEST(ScoreFigures, count_cases_and_mark_correct_answers) {
                                     {2, {&adhesion, nothing}},
                                     {3, {&adhesion, right}},
                                     {5, {&adhesion, unknown}}})["confusion"];
-    EXPECT_EQ(values["truths"], (nlohmann::json{"no gap", "adhesion"}));
-    EXPECT_EQ(values["verdicts"], (nlohmann::json{"no gap", "adhesion", "unknown effect"}));
+    EXPECT_EQ(values["truths"], (nlohmann::json{"no_gap", "adhesion"}));
+    EXPECT_EQ(values["verdicts"], (nlohmann::json{"no_gap", "adhesion", "unknown_effect"}));
     EXPECT_EQ(values["cases"], (nlohmann::json{{9, 1, 0}, {2, 3, 5}}));
     EXPECT_EQ(values["right"], (nlohmann::json{{0, 0}, {1, 1}}));
 }

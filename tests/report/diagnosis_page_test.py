@@ -8,6 +8,7 @@ import pathlib
 import re
 import tempfile
 import unittest
+import unittest.mock
 
 from diagnosis_samples import VERDICTS, bare, of, sample, with_texts
 
@@ -126,6 +127,16 @@ class Presented(unittest.TestCase):
         text = diagnosis_text(read_diagnosis(self.folder / "diagnosis.json"))
         self.assertEqual(printed, text + "\nwrote\n" + "".join(f"  {self.folder / name}\n" for name in files))
         self.assertEqual(self.names(), {*files, "figures.json", *(f"{name}.{kind}" for name in figures for kind in ("pdf", "svg"))})
+
+    def test_a_page_that_cannot_be_made_costs_nothing_else(self):
+        self.write(sample("effect"))
+        missing = ModuleNotFoundError("No module named 'plotly'", name="plotly")
+        told = io.StringIO()
+        with unittest.mock.patch("mcdem.report.diagnosis_page.write_diagnosis_page", side_effect=missing), contextlib.redirect_stderr(told):
+            printed = self.presented()
+        self.assertIn("which.png", printed)
+        self.assertNotIn("diagnosis.html", printed)
+        self.assertRegex(told.getvalue(), "^mcdem: no page: the Python package plotly is not there .*install python3-plotly")
 
     def test_only_what_is_wanted(self):
         self.write(sample("no_gap"))

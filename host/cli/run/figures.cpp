@@ -60,7 +60,7 @@ std::vector<fs::path> draw_if_possible(const std::function<std::vector<fs::path>
 }
 
 void present(const std::string& name, const std::vector<std::string>& arguments) {
-    run_python("mcdem.report." + name, arguments, "the results are written, but not shown");
+    run_python("mcdem.report." + name, arguments, "the results are written, but could not all be shown");
 }
 
 }  // namespace mcdem::cli

@@ -190,8 +190,8 @@ def compute_part(command, folder, part, device="", started=lambda process: None)
         said = process.stderr.read()
     if process.returncode == 2:
         return said
-    if process.returncode < 0:
-        raise Killed(f"ended by signal {-process.returncode}")
+    if process.returncode < 0 or process.returncode == INTERRUPTED:
+        raise Killed("ended by a signal" if process.returncode > 0 else f"ended by signal {-process.returncode}")
     if process.returncode != 0:
         raise RuntimeError(f"exit code {process.returncode}: {said.strip()[-1000:]}")
     return None
@@ -222,9 +222,23 @@ def client_of(scheduler):
         raise InputError(f"--scheduler: must be the address or file of a Dask scheduler that answers, got {scheduler}: {error}")
 
 
+COMMANDS = (["run"], ["diagnose"], ["challenge", "run"])
+OWN_OPTIONS = ("--device", "--part", "--merge", "--missing", "--workers")
+
+
+def expect_command(words):
+    """Raises InputError unless the words are a command that works in parts, without the options that are given here."""
+    if not any(words[:len(command)] == command for command in COMMANDS):
+        raise InputError(f"a command is needed: run, challenge run or diagnose, with its options; got {' '.join(words[:2])}")
+    for word in words:
+        if word.split("=")[0] in OWN_OPTIONS:
+            raise InputError(f"{word}: cannot be given here, `mcdem distribute` sets it for each process")
+
+
 def main():
     """What `mcdem distribute` starts (host/cli/parts/distribute.cpp): TRIES SCHEDULER WORD.., the second may be empty."""
     tries, scheduler, *words = sys.argv[1:]
+    expect_command(words)
     with contextlib.ExitStack() as stack:
         client = stack.enter_context(client_of(scheduler)) if scheduler else None
         raise_when_interrupted()

@@ -5,12 +5,13 @@ from collections.abc import Sequence
 from types import ModuleType
 
 from ..errors import InputError
-from ..results import Recording, read_run
+from ..results import read_run
 from ..results.folder import result_files
+from ..results.run_file import whole_scans
 from .command_line import output_path
 
 EPILOG = """\
-Needs positions and contacts in the run (output.positions, output.contacts: both on by default), and the Python package h5py.
+Needs positions and contacts in the run (output.positions, output.contacts: both on by default).
 Examples:
   mcdem export out/small --vtk --out out/paraview
   mcdem export out/small --vtk --replica 1 --scan 6 7 --out out/some
@@ -71,20 +72,25 @@ def write_files(options: argparse.Namespace) -> int:
 
 
 def _checked_files(options: argparse.Namespace) -> list[str]:
-    """The files of the run, after all of it was read once: the exporting modules rely on its form."""
-    recordings = read_run(options.RUN, contacts=True, positions=True).recordings
+    """The files of the run, after what is exported was read once: the exporting modules rely on its form."""
+    recordings = read_run(options.RUN).recordings
     for number in options.replica:
         if not 0 <= number < len(recordings):
             raise InputError(f"--replica: must be one of 0 to {len(recordings) - 1}, got {number}")
-    chosen = [one for number, one in enumerate(recordings) if not options.replica or number in options.replica]
-    _expect_positions(chosen, options.scan, options.RUN)
-    return result_files(options.RUN)
+    files = result_files(options.RUN)
+    _expect_positions([one for file in files for one in _positions_of(file, options)], options)
+    return files
 
 
-def _expect_positions(recordings: Sequence[Recording], frames: Sequence[int], run: str) -> None:
-    positions = [len(position) > 0 for one in recordings
-                 for frame, position in zip(one.scans.frame.tolist(), one.scans.position, strict=True) if not frames or frame in frames]
-    if frames and not positions:
-        raise InputError(f"--scan: must be among the scans of {run} (column frame of plate.csv), got {', '.join(map(str, frames))}")
+def _positions_of(file: str, options: argparse.Namespace) -> list[bool]:
+    """Whether each chosen scan has positions. Raises InputError if anything of the chosen replicas is damaged."""
+    return [len(position) > 0 for scans in whole_scans(file, options.replica or True)
+            for frame, position in zip(scans.frame.tolist(), scans.position, strict=True) if not options.scan or frame in options.scan]
+
+
+def _expect_positions(positions: Sequence[bool], options: argparse.Namespace) -> None:
+    if options.scan and not positions:
+        raise InputError(f"--scan: must be among the scans of {options.RUN} (column frame of plate.csv), got "
+                         f"{', '.join(map(str, options.scan))}")
     if not any(positions):
-        raise InputError(f"{run}: has no positions to export: run with output.positions = true")
+        raise InputError(f"{options.RUN}: has no positions to export: run with output.positions = true")

@@ -74,7 +74,7 @@ def _add_runs(page: "Page", paths: Sequence[str], options: argparse.Namespace) -
     from ..report.packing_view import PackingLimits
     from ..report.report_sources import origins_of, shown_packings
     from ..report.run_page import RunsOnPage, add_runs
-    loaded = load_runs(paths, contacts=True, positions=True)
+    loaded = load_runs(paths, contacts=True, first_positions=True)
     reference = load_reference(options.against, options.setting, options.discard, contacts=True).setting if options.against else None
     limits = PackingLimits(options.scans)
     packings, left_out = shown_packings(loaded.settings, limits)

@@ -40,15 +40,21 @@ class LoadedRuns:
     settings: list[Setting]
 
 
-def load_runs(paths: Sequence[str], contacts: bool = False, positions: bool = False) -> LoadedRuns:
+def load_runs(paths: Sequence[str], contacts: bool = False, first_positions: bool = False) -> LoadedRuns:
     """Each path is a result folder or file.
 
-    If there are several runs, the label of every setting begins with that of its run. Raises InputError, RunError.
+    `first_positions`: reads positions of the first replica of each setting. If there are several runs, the label of every setting begins with that of its run. Raises InputError, RunError.
     """
-    runs = [read_run(path, contacts=contacts, positions=positions) for path in paths]
+    runs = [read_run(path, contacts=contacts, positions=_first_replicas(path) if first_positions else False) for path in paths]
     prefixes = [name + ": " for name in names_of(paths)] if len(paths) > 1 else [""]
     return LoadedRuns(runs, [replace(setting, label=prefix + setting.label)
                              for run, prefix in zip(runs, prefixes, strict=True) for setting in group_by_setting(run)])
+
+
+def _first_replicas(path: str) -> list[int]:
+    """The number of the first replica of each setting."""
+    run = read_run(path)
+    return [run.recordings.index(setting.replicas[0]) for setting in group_by_setting(run)]
 
 
 def names_of(paths: Sequence[str]) -> list[str]:

@@ -4,6 +4,7 @@ import matplotlib.patches
 import matplotlib.ticker
 import numpy as np
 
+from ..report.diagnosis_words import words_of
 from .style import GREY, key, new_axes, plain, styled
 from .values import read
 
@@ -24,8 +25,8 @@ def confusion(source, axes=None):
                   color="white" if parts[truth, verdict] > 0.55 else "#111111")
     for truth, verdict in values["right"]:
         axes.add_patch(matplotlib.patches.Rectangle((verdict - 0.46, truth - 0.44), 0.92, 0.88, fill=False, edgecolor=RIGHT))
-    axes.set_yticks(range(cases.shape[0]), [plain(words) for words in values["truths"]])
-    axes.set_xticks(range(cases.shape[1]), [plain(words) for words in values["verdicts"]], rotation=45, ha="left", rotation_mode="anchor")
+    axes.set_yticks(range(cases.shape[0]), [plain(words_of(name)) for name in values["truths"]])
+    axes.set_xticks(range(cases.shape[1]), [plain(words_of(name)) for name in values["verdicts"]], rotation=45, ha="left", rotation_mode="anchor")
     axes.xaxis.tick_top()
     axes.xaxis.set_label_position("top")
     axes.set(xlabel="verdict", ylabel="truth")

@@ -4,8 +4,10 @@ import os
 import sys
 
 from .draw import draw_figures, draw_if_possible
+from ..errors import InputError
 from ..files import read_whole
 from ..outputs import DIAGNOSIS, replace_own
+from ..program import message_of, say
 from .diagnosis import Diagnosis, diagnosis_of
 from .diagnosis_text import diagnosis_text, verdict_sentence
 from .diagnosis_values import diagnosis_figure_values
@@ -20,10 +22,20 @@ def present(folder: str | os.PathLike[str], page: bool = True, figures: bool = T
     diagnosis = completed(folder)
     print(f"{diagnosis_text(diagnosis)}\nwrote\n  {os.path.join(folder, FILE)}", flush=True)
     if page:
-        print(f"  {write_page(diagnosis, folder)}", flush=True)
+        _write_page_if_possible(diagnosis, folder)
     if figures:
         for figure in draw_if_possible(lambda: draw_figures(os.fspath(folder), diagnosis_figure_values(diagnosis))):
             print(f"  {figure}")
+
+
+def _write_page_if_possible(diagnosis: Diagnosis, folder: str | os.PathLike[str]) -> None:
+    """As figures: errors are only reported, but for a file of others in its place."""
+    try:
+        print(f"  {write_page(diagnosis, folder)}", flush=True)
+    except InputError:
+        raise
+    except Exception as error:
+        say(f"no page: {message_of(error)}")
 
 
 def completed(folder: str | os.PathLike[str]) -> Diagnosis:

@@ -8,13 +8,14 @@ import numpy as np
 from ..errors import InputError, RunError
 from .folder import result_files
 from .recording import Recording, Run, Scans
-from .run_file import read_file
+from .run_file import Chosen, read_file
 
 
-def read_run(path: str | os.PathLike[str], contacts: bool = False, positions: bool = False) -> Run:
+def read_run(path: str | os.PathLike[str], contacts: bool = False, positions: Chosen = False) -> Run:
     """The run in a result file, or in a result folder: its run.h5, otherwise the segments of an unfinished run.
 
-    Averages of scans are always read; contacts and positions, which are most of the data, on request.
+    Averages of scans are always read; contacts and positions, which are most of the data, on request: positions of all replicas, or of
+    those with these numbers.
     Raises InputError for what is no run or damaged, RunError if the system refuses to read.
     """
     run: Run | None = None

@@ -1,5 +1,6 @@
 """One result file: run.h5 or a segment of an unfinished run. host/io/README.md describes its layout."""
 import math
+from collections.abc import Collection, Iterator
 from dataclasses import fields, replace
 from typing import Any
 
@@ -17,11 +18,12 @@ ROW_SHAPES = {"wall_force": (len(Wall), 3), "stress": (3, 3), "fabric": (3, 3), 
 # Files of earlier versions do not have these.
 OPTIONAL = {"rate_error", "max_overlap", "stress", "fabric", "strain", "wall_work", "weight_work", "damping_loss", "friction_loss",
             "drag_loss", "energy_error"}
+Chosen = bool | Collection[int]  # all or none of the replicas, or their numbers
 KINDS: dict[str, type[np.generic]] = {"frame": np.int64, "cycle": np.int64, "phase": np.int64, "settled": np.bool_}
 SCAN_FIELDS = [one.name for one in fields(Scans) if one.name not in ("position", "rotation", "contacts")]
 
 
-def read_file(path: str, contacts: bool, positions: bool) -> Run:
+def read_file(path: str, contacts: bool, positions: Chosen) -> Run:
     """The run in one file. Raises InputError, RunError."""
     with File(path) as file:
         _expect_result(file)
@@ -31,8 +33,22 @@ def read_file(path: str, contacts: bool, positions: bool) -> Run:
         if replicas != file.count("/observables"):
             raise InputError(f"{file.where('/observables')}: must hold {replicas} replicas")
         headers = [_read_header(file, f"replica_{number:05}") for number in range(replicas)]
-        recordings = [_with_scans(file, f"replica_{number:05}", header, contacts, positions) for number, header in enumerate(headers)]
+        recordings = [_with_scans(file, f"replica_{number:05}", header, contacts, is_chosen(number, positions))
+                      for number, header in enumerate(headers)]
         return Run(scene=scene[0] if scene else "", recordings=tuple(recordings), **texts)
+
+
+def is_chosen(number: int, chosen: Chosen) -> bool:
+    return chosen if isinstance(chosen, bool) else number in chosen
+
+
+def whole_scans(path: str, replicas: Chosen) -> Iterator[Scans]:
+    """The scans of these replicas of a file with contacts and positions, one replica after another. Raises InputError, RunError."""
+    with File(path) as file:
+        for number in range(file.count("/observables")):
+            if is_chosen(number, replicas):
+                replica = f"replica_{number:05}"
+                yield _with_scans(file, replica, _read_header(file, replica), contacts=True, positions=True).scans
 
 
 def _expect_result(file: File) -> None:
