@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/look.h"
 #include "diagnose/observe/needed_to_diagnose.h"
@@ -21,6 +22,8 @@ public:
           lock_(options.folder, FolderLock::Use::shared),
           store_(options.folder / "simulations"),
           common_(std::move(plan.common)) {
+        for (const char* folder : {"", "simulations"})  // of killed processes; others lock theirs
+            remove_temporaries(options.folder / folder);
         if (options.library && is_there(*options.library)) return;
         auto trials = library_trials(plan.library);
         if (options.paper_metrics) keep_recordings(trials);

@@ -280,6 +280,7 @@ bool RunParts::merge() try {
 } catch (const std::exception&) {
     if (!is_merged(options_.folder)) throw;
     expect_scene_of(options_.folder, scene_);
+    if (is_there(old_parts(options_.folder))) throw;  // they cannot be removed; the run is whole
     return true;
 }
 
