@@ -89,8 +89,6 @@ RunReader::RunReader(const std::filesystem::path& file_or_folder)
 
 RunReader::~RunReader() = default;
 
-const std::vector<std::filesystem::path>& RunReader::files() const { return files_->paths(); }
-
 Scan RunReader::read_scan(std::size_t replica, std::size_t scan) {
     const Recording& recording = run_.recordings.at(replica);
     Scan filled = recording.scans.at(scan);

@@ -28,7 +28,6 @@ public:
     ~RunReader();
     /// The run without positions and contacts.
     const Run& run() const { return run_; }
-    const std::vector<std::filesystem::path>& files() const;
     /// One scan with all recorded data.
     Scan read_scan(std::size_t replica, std::size_t scan);
 

@@ -16,8 +16,8 @@ from mcdem.observe.replicas import Setting, group_by_setting
 from mcdem.report.csv_text import csv_field
 from mcdem.report.estimate_text import rate_note, with_error
 from mcdem.report.labels import one_line, shortened, stress_unit, styles_of, three_digits, words_for
-from mcdem.report.run_tables import (csv_of_models, csv_of_scans, table_of_comparisons, table_of_energies, table_of_models,
-                                     table_of_scaling, tables_of_scans)
+from mcdem.report.run_tables import csv_of_models, table_of_comparisons, table_of_energies, table_of_models, table_of_scaling
+from mcdem.report.scan_tables import csv_of_scans, tables_of_scans
 from mcdem.report.text_table import Column, TextTable, to_text
 
 NAN = math.nan

@@ -1,23 +1,16 @@
 #include "cli/run/results.h"
 
-#include <algorithm>
-
 #include "cli/shell/commands.h"
 #include "core/look.h"
 #include "ensemble/reference.h"
 
 namespace mcdem::inline cli {
-namespace {
-
-namespace fs = std::filesystem;
-
-}  // namespace
 
 LoadedReference load_reference(const ReferenceOptions& options, ReadWhat what) {
     LoadedReference loaded;
     for (const auto& path : options.paths) loaded.runs.push_back(read_reference(path, options.discard, what));
     for (std::size_t k = 0; k < options.paths.size(); ++k) {
-        const bool measured = is_there(fs::path(options.paths[k]) / "experiment.toml");
+        const bool measured = is_there(std::filesystem::path(options.paths[k]) / "experiment.toml");
         const auto setting =
             measured ? Setting{loaded.runs[k].name, replicas_of(loaded.runs[k].recordings)}
                      : chosen_setting(loaded.runs[k], options.setting, options.paths[k], "--setting");

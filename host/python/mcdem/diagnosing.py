@@ -1,7 +1,5 @@
 """mcdem.diagnose: the compiled diagnosis, and what Python writes of it."""
 import importlib
-import json
-import os
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,12 +16,10 @@ def diagnose(scene: Any, experiment: Any, folder: Any, *, candidates: Sequence[s
     RuntimeError.
     """
     engine = importlib.import_module("._engine", __package__)
-    from .report.present_diagnosis import FILE, completed, write_page
+    from .report.present_diagnosis import completed, write_page
     engine.diagnose(scene, experiment, folder, candidates=list(candidates), replicates=replicates, pairs=pairs,
                     confirmations=confirmations, refine=refine, seed=seed, library=library, device=device, progress=progress)
-    diagnosis = completed(folder)
+    diagnosis, document = completed(folder)
     if page:
         write_page(diagnosis, folder)
-    with open(os.path.join(folder, FILE), encoding="utf-8") as file:
-        found: dict[str, Any] = json.load(file)
-    return found
+    return document

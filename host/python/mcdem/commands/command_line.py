@@ -84,11 +84,11 @@ def run_command(words: Sequence[str]) -> int:
         say("`mcdem --help` tells more")
         return BAD_INPUT
     command = importlib.import_module(f".{word}", __package__)
-    return int(command.run(parser_of(word).parse_intermixed_args(words[1:])))
+    return int(command.run(parser_of(word, command).parse_intermixed_args(words[1:])))
 
 
-def parser_of(word: str) -> Parser:
-    command = importlib.import_module(f".{word}", __package__)
+def parser_of(word: str, command: Any) -> Parser:
+    """`command`: its module."""
     parser = Parser(prog=f"mcdem {word}", description=COMMANDS[word], epilog=getattr(command, "EPILOG", None), formatter_class=Help,
                     allow_abbrev=False)
     command.add_arguments(parser)
@@ -101,7 +101,7 @@ def complete(command: str, words: Sequence[str]) -> None:
     A line is a candidate, with its description after a tab, or `:files` or `:folders` for those that the shell finds.
     """
     *before, word = words
-    actions = parser_of(command)._actions
+    actions = parser_of(command, importlib.import_module(f".{command}", __package__))._actions
     options = {name: action for action in actions for name in action.option_strings if action.help is not argparse.SUPPRESS}
     asked = options.get(before[-1]) if before else None
     if asked and asked.nargs != 0:

@@ -3,13 +3,13 @@ import argparse
 import contextlib
 from collections.abc import Sequence
 
-from ..errors import RunError
 from ..observe.compare import Comparison, compare
 from ..observe.replicas import Setting
 from ..report.run_tables import table_of_comparisons
 from ..report.text_table import to_text
 from .command_line import at_least_zero, output_path
-from .sources import add_figure_options, add_reference_options, add_runs_option, load_reference, load_runs
+from .sources import (add_figure_options, add_reference_options, add_runs_option, figure_options, load_reference, load_runs,
+                      print_figures)
 
 EPILOG = """\
 Rtop: top force at maximum compression over the reference's. errf: RMS error of the top force.
@@ -47,10 +47,5 @@ def run(options: argparse.Namespace) -> int:
 
 def _draw(options: argparse.Namespace, settings: Sequence[Setting], reference: Setting, comparisons: Sequence[Comparison]) -> None:
     from ..report.draw import draw_runs
-    from ..report.figure_data import FigureOptions
-    figures = draw_runs(options.out, settings, reference, FigureOptions(
-        options.touch_force, tuple(comparisons), options.distribution_displacement, options.threshold))
-    if not figures:
-        raise RunError(f"{options.out}: no figures were drawn")
-    for figure in figures:
-        print(figure)
+    chosen = figure_options(options, touch_force=options.touch_force, comparisons=tuple(comparisons))
+    print_figures(draw_runs(options.out, settings, reference, chosen), options.out)

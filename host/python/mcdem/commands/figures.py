@@ -2,9 +2,9 @@
 import argparse
 import pathlib
 
-from ..errors import InputError, RunError
+from ..errors import InputError
 from .command_line import output_path
-from .sources import add_figure_options, add_reference_options, load_reference, load_runs
+from .sources import add_figure_options, add_reference_options, figure_options, load_runs, print_figures, reference_of
 
 EPILOG = """\
 PDF, PNG and SVG, 86 or 178 mm wide, without titles. Runs: top force, force distribution at one plate
@@ -27,17 +27,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     from ..report.report_sources import diagnosis_file
     diagnoses = [file for source in options.sources if (file := diagnosis_file(source))]
-    drawn = _of_diagnosis(options, diagnoses[0]) if diagnoses else _of_runs(options)
-    if not drawn:
-        raise RunError(f"{options.out}: no figures were drawn")
-    for figure in drawn:
-        print(figure)
+    print_figures(_of_diagnosis(options, diagnoses[0]) if diagnoses else _of_runs(options), options.out)
     return 0
 
 
 def _of_diagnosis(options: argparse.Namespace, file: str) -> list[pathlib.Path]:
-    from ..report.draw import draw_figures
     from ..outputs import output_folder
+    from ..report.draw import draw_figures
     from ..report.diagnosis import read_diagnosis
     from ..report.diagnosis_values import diagnosis_figure_values
     if len(options.sources) > 1:
@@ -50,9 +46,7 @@ def _of_diagnosis(options: argparse.Namespace, file: str) -> list[pathlib.Path]:
 def _of_runs(options: argparse.Namespace) -> list[pathlib.Path]:
     from ..report.draw import draw_runs
     from ..outputs import output_folder
-    from ..report.figure_data import FigureOptions
     settings = load_runs(options.sources, contacts=True).settings
-    reference = load_reference(options.against, options.setting, options.discard, contacts=True).setting if options.against else None
+    reference = reference_of(options)
     with output_folder(options.out):
-        return draw_runs(options.out, settings, reference, FigureOptions(
-            distribution_displacement=options.distribution_displacement, threshold=options.threshold))
+        return draw_runs(options.out, settings, reference, figure_options(options))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from ..program import say
 from .command_line import output_path
-from .sources import add_figure_options, add_reference_options, load_reference, load_runs
+from .sources import add_figure_options, add_reference_options, figure_options, load_runs, reference_of
 
 if TYPE_CHECKING:
     from ..report.page import Page
@@ -70,15 +70,13 @@ def write_report(options: argparse.Namespace) -> None:
 
 
 def _add_runs(page: "Page", paths: Sequence[str], options: argparse.Namespace) -> None:
-    from ..report.figure_data import FigureOptions
     from ..report.packing_view import PackingLimits
     from ..report.report_sources import origins_of, shown_packings
     from ..report.run_page import RunsOnPage, add_runs
-    loaded = load_runs(paths, contacts=True, first_positions=True)
-    reference = load_reference(options.against, options.setting, options.discard, contacts=True).setting if options.against else None
+    loaded, reference = load_runs(paths, contacts=True, first_positions=True), reference_of(options)
     limits = PackingLimits(options.scans)
     packings, left_out = shown_packings(loaded.settings, limits)
     for note in left_out:
         say(note)
-    figures = FigureOptions(distribution_displacement=options.distribution_displacement, threshold=options.threshold)
-    add_runs(page, RunsOnPage(origins_of(paths, loaded.runs), loaded.settings, reference, figures, packings, left_out, limits))
+    add_runs(page, RunsOnPage(origins_of(paths, loaded.runs), loaded.settings, reference, figure_options(options), packings, left_out,
+                              limits))

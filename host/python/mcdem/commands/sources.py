@@ -1,14 +1,18 @@
 """Options that name runs, references and figures, and what they load."""
 import argparse
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
-from ..errors import InputError
+from ..errors import InputError, RunError
 from ..observe.replicas import Setting, group_by_setting, model_of
 from ..results import ContactModel, Recording, Run, read_run
 from ..results.folder import is_there
 from .command_line import at_least_zero, whole_at_least_zero
+
+if TYPE_CHECKING:
+    from ..report.figure_data import FigureOptions
 
 
 def add_runs_option(parser: argparse.ArgumentParser) -> None:
@@ -25,11 +29,26 @@ def add_reference_options(parser: argparse.ArgumentParser, name: str, text: str,
 
 
 def add_figure_options(parser: argparse.ArgumentParser) -> None:
-    """Fields of FigureOptions."""
+    """Those that figure_options gets."""
     parser.add_argument("--displacement", metavar="M", type=at_least_zero, default=0.018, dest="distribution_displacement",
                         help="Draw the force distribution at the recorded plate displacement nearest to this one [m]")
     parser.add_argument("--threshold", metavar="N", type=at_least_zero, default=0.0,
                         help="Contact force below which contacts are not counted in the figure of Z if there is no reference [N]")
+
+
+def figure_options(options: argparse.Namespace, **comparison: Any) -> "FigureOptions":
+    """`comparison`: fields of FigureOptions that no option gives."""
+    from ..report.figure_data import FigureOptions
+    return FigureOptions(distribution_displacement=options.distribution_displacement, threshold=options.threshold, **comparison)
+
+
+def print_figures(figures: Iterable[str | os.PathLike[str]], out: str) -> None:
+    """One path a line. Raises RunError if there are none."""
+    drawn = list(figures)
+    if not drawn:
+        raise RunError(f"{out}: no figures were drawn")
+    for figure in drawn:
+        print(figure)
 
 
 @dataclass(frozen=True)
@@ -43,7 +62,8 @@ class LoadedRuns:
 def load_runs(paths: Sequence[str], contacts: bool = False, first_positions: bool = False) -> LoadedRuns:
     """Each path is a result folder or file.
 
-    `first_positions`: reads positions of the first replica of each setting. If there are several runs, the label of every setting begins with that of its run. Raises InputError, RunError.
+    `first_positions`: reads positions of the first replica of each setting. If there are several runs, the label of every setting
+    begins with that of its run. Raises InputError, RunError.
     """
     runs = [read_run(path, contacts=contacts, positions=_first_replicas(path) if first_positions else False) for path in paths]
     prefixes = [name + ": " for name in names_of(paths)] if len(paths) > 1 else [""]
@@ -96,6 +116,11 @@ def load_reference(paths: Sequence[str], setting: str = "", discard: int = 0, co
         settings.append(Setting(run.name, run.recordings) if is_measured else chosen_setting(run, setting, path, "--setting"))
     replicas: list[Recording] = [replica for one in settings for replica in one.replicas]
     return LoadedReference(runs, Setting(", ".join(one.label for one in settings), tuple(replicas)))
+
+
+def reference_of(options: argparse.Namespace) -> Setting | None:
+    """What --against names, with contacts."""
+    return load_reference(options.against, options.setting, options.discard, contacts=True).setting if options.against else None
 
 
 def chosen_setting(run: Run, label: str, where: str, option: str) -> Setting:

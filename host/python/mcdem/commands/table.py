@@ -4,7 +4,8 @@ import argparse
 from ..errors import InputError
 from ..observe.model_table import model_table
 from ..observe.programmes import with_programme
-from ..report.run_tables import csv_of_models, csv_of_scans, table_of_models, table_of_scaling, tables_of_scans
+from ..report.run_tables import csv_of_models, table_of_models, table_of_scaling
+from ..report.scan_tables import csv_of_scans, tables_of_scans
 from ..report.text_table import to_text
 from .sources import add_runs_option, load_runs
 

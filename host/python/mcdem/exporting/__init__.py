@@ -5,6 +5,7 @@ from types import ModuleType
 
 from ..files import write_whole
 from ..outputs import Kind, expect_replaceable
+from ..results.parameters import keys_that_vary
 from .run_file import read_replicas
 
 
@@ -13,8 +14,7 @@ def export(files: Sequence[str], folder: pathlib.Path, formats: Sequence[ModuleT
     """Exports a run, whose files have been checked, into a folder (pathlib.Path) by modules of this package: vtk, xyz.
     `replicas`, `scans`: their numbers; all where empty. Returns the number of files."""
     run = read_replicas(files)
-    keys = sorted(set().union(*(replica.parameters for replica in run)))
-    varying = [key for key in keys if len({replica.parameters.get(key, "") for replica in run}) > 1]
+    varying = keys_that_vary([replica.parameters for replica in run])
     chosen = [replica for replica in run if not replicas or replica.number in replicas]
     listed = "".join(replica.file_name + "".join(f"  {key} = {replica.parameters.get(key, '')}" for key in varying) + "\n"
                      for replica in chosen)

@@ -2,8 +2,8 @@
 import os
 import sys
 
-from .draw import draw_figures, draw_if_possible
 from .convergence import convergence_figure_values, read_convergence, table_of_convergence
+from .draw import draw_figures, draw_if_possible
 from .text_table import to_text
 
 

@@ -2,8 +2,8 @@
 import json
 import os
 import sys
+from typing import Any
 
-from .draw import draw_figures, draw_if_possible
 from ..errors import InputError
 from ..files import read_whole
 from ..outputs import DIAGNOSIS, replace_own
@@ -11,7 +11,7 @@ from ..program import message_of, say
 from .diagnosis import Diagnosis, diagnosis_of
 from .diagnosis_text import diagnosis_text, verdict_sentence
 from .diagnosis_values import diagnosis_figure_values
-
+from .draw import draw_figures, draw_if_possible
 
 FILE = "diagnosis.json"
 
@@ -19,7 +19,7 @@ FILE = "diagnosis.json"
 def present(folder: str | os.PathLike[str], page: bool = True, figures: bool = True) -> None:
     """Prints the text and the files that are there, writes diagnosis.html and figures, and adds the verdict's sentence to
     diagnosis.json if it lacks it. Raises InputError, RunError and OSError; figures that cannot be drawn are only reported."""
-    diagnosis = completed(folder)
+    diagnosis, _ = completed(folder)
     print(f"{diagnosis_text(diagnosis)}\nwrote\n  {os.path.join(folder, FILE)}", flush=True)
     if page:
         _write_page_if_possible(diagnosis, folder)
@@ -38,13 +38,14 @@ def _write_page_if_possible(diagnosis: Diagnosis, folder: str | os.PathLike[str]
         say(f"no page: {message_of(error)}")
 
 
-def completed(folder: str | os.PathLike[str]) -> Diagnosis:
-    """The diagnosis in the folder; its diagnosis.json has the verdict's sentence afterwards. Raises InputError, RunError, OSError."""
+def completed(folder: str | os.PathLike[str]) -> tuple[Diagnosis, dict[str, Any]]:
+    """The diagnosis in the folder, and its document; diagnosis.json has the verdict's sentence afterwards.
+
+    Raises InputError, RunError, OSError."""
     file = os.path.join(folder, FILE)
     content = read_whole(file)
     diagnosis = diagnosis_of(content, file)
-    _add_sentence(file, content, diagnosis)
-    return diagnosis
+    return diagnosis, _with_sentence(file, json.loads(content.decode("utf-8-sig")), diagnosis)
 
 
 def write_page(diagnosis: Diagnosis, folder: str | os.PathLike[str]) -> str:
@@ -55,16 +56,17 @@ def write_page(diagnosis: Diagnosis, folder: str | os.PathLike[str]) -> str:
     return page
 
 
-def _add_sentence(file: str, content: bytes, diagnosis: Diagnosis) -> None:
-    document = json.loads(content.decode("utf-8-sig"))
+def _with_sentence(file: str, document: dict[str, Any], diagnosis: Diagnosis) -> dict[str, Any]:
+    """Writes the file again if the sentence was missing."""
     if "sentence" in document:
-        return
+        return document
     written = {}
     for key, value in document.items():  # at its documented place
         written[key] = value
         if key == "seconds":
             written["sentence"] = verdict_sentence(diagnosis)
     replace_own(file, DIAGNOSIS, (json.dumps(written, indent=2, ensure_ascii=False) + "\n").encode())
+    return written
 
 
 if __name__ == "__main__":

@@ -3,12 +3,12 @@ import os
 import sys
 from collections.abc import Sequence
 
-from .draw import LARGEST_RUN, draw_if_possible, draw_runs
 from ..observe.model_table import model_table
 from ..observe.programmes import with_programme
 from ..observe.replicas import Setting, group_by_setting
 from ..program import say
 from ..results import read_run
+from .draw import LARGEST_RUN, draw_if_possible, draw_runs
 from .estimate_text import with_error
 from .run_tables import table_of_models
 from .text_table import to_text

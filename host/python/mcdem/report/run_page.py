@@ -12,7 +12,8 @@ from .figure_data import FigureOptions
 from .packing_view import PackingLimits, ShownPacking, packing_view
 from .page import Page
 from .run_charts import run_charts
-from .run_tables import table_of_comparisons, table_of_energies, table_of_models, table_of_scaling, tables_of_scans
+from .run_tables import table_of_comparisons, table_of_energies, table_of_models, table_of_scaling
+from .scan_tables import tables_of_scans
 from .run_words import main_result, new_words, what_was_simulated
 
 MOST_SEEDS = 12  # that are listed

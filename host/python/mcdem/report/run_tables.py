@@ -15,11 +15,7 @@ from ..results.recording import Recording
 from .csv_text import csv_field, known, varying_keys
 from .estimate_text import beyond_note, number, rate_note, with_error
 from .labels import words_for
-from .scan_tables import csv_of_scans, tables_of_scans
 from .text_table import Column, TextTable
-
-__all__ = ["csv_of_models", "csv_of_scans", "table_of_comparisons", "table_of_energies", "table_of_models", "table_of_scaling",
-           "tables_of_scans", "with_error"]
 
 
 def table_of_models(models: ModelTable) -> TextTable:

@@ -119,9 +119,11 @@ def _scans(plate: dict[str, NDArray[Any]]) -> Scans:
                  position=nothing, rotation=nothing, contacts=(NO_CONTACTS,) * count)
 
 
-def _by_frame(frame: Ints) -> Iterator[tuple[int, Bools]]:
-    for number in np.unique(frame).tolist():
-        yield number, frame == number
+def _by_frame(frame: Ints) -> Iterator[tuple[int, Ints]]:
+    """The numbers of the frames with their rows, in the order of the table."""
+    order = np.argsort(frame, kind="stable")
+    numbers, first = np.unique(frame[order], return_index=True)
+    yield from zip(numbers.tolist(), np.split(order, first[1:]))
 
 
 def _with_grains(recording: Recording, rows: dict[str, NDArray[Any]]) -> Recording:
@@ -161,7 +163,7 @@ def _with_contacts(recording: Recording, rows: dict[str, NDArray[Any]]) -> Recor
     force = np.where(swapped[:, None], -force, force)
     contacts = list(recording.scans.contacts)
     for number, mine in _by_frame(frame):
-        contacts[number] = Contacts(grain[mine], partner[mine], point[mine], force[mine], np.full(int(mine.sum()), np.nan))
+        contacts[number] = Contacts(grain[mine], partner[mine], point[mine], force[mine], np.full(len(mine), np.nan))
     return replace(recording, scans=replace(recording.scans, contacts=tuple(contacts)))
 
 
