@@ -19,11 +19,21 @@ FLOORS = {
     "calibrate": ["metrics", "core"],
     "diagnose": ["metrics", "experiment", "scene", "core"],
     "ensemble": ["diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
-    "challenge": ["ensemble", "diagnose", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
-    "cli": ["challenge", "ensemble", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
-            "core"],
+    "cli": ["ensemble", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
     "python": ["ensemble", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
                "core"],
+}
+# Room of the Python package -> the rooms that it may import. All may import the modules that are in no room.
+ROOMS = {
+    "results": [],
+    "importing": [],
+    "observe": ["results"],
+    "exporting": ["results"],
+    "diagnosis": ["results"],
+    "report": ["diagnosis", "observe", "results"],
+    "figures": ["report"],
+    "challenge": ["report", "diagnosis", "results"],
+    "commands": ["challenge", "figures", "report", "diagnosis", "observe", "exporting", "importing", "results"],
 }
 LONGEST_FILE = 400
 LONGEST_FUNCTION = 70
@@ -55,6 +65,22 @@ def wrong_includes(root):
                 if include and floor_of(include[1]) not in allowed | {None}:
                     yield (f"{file.relative_to(root)}:{number}: {floor} must not include {include[1]}; "
                            f"it may use {', '.join(sorted(allowed - {floor})) or 'nothing'}")
+
+
+def imported_rooms(text):
+    """Line and name of what each line imports from beside its room: `from ..NAME`, `from .. import NAME`."""
+    for number, line in enumerate(text.splitlines(), 1):
+        if found := re.match(r"\s*from \.\.(?:(\w+)| import (\w+))", line):
+            yield number, found[1] or found[2]
+
+
+def wrong_imports(root):
+    package = root / "host/python/mcdem"
+    for room, below in ROOMS.items():
+        for file in sorted((package / room).glob("*.py")):
+            for number, name in imported_rooms(file.read_text()):
+                if (package / name).is_dir() and name not in below:
+                    yield (f"{file.relative_to(root)}:{number}: {room} must not import {name}; it may use {', '.join(below) or 'no room'}")
 
 
 def types_twice(root):
@@ -127,6 +153,9 @@ def strange_folders(root):
     for folder in sorted((root / "host").iterdir()):
         if folder.is_dir() and folder.name not in FLOORS:
             yield f"host/{folder.name}: is no floor; name it in tests/floors_test.py"
+    for folder in sorted((root / "host/python/mcdem").iterdir()):
+        if folder.is_dir() and folder.name not in {*ROOMS, "__pycache__"}:
+            yield f"host/python/mcdem/{folder.name}: is no room; name it in tests/floors_test.py"
 
 
 def long_files(root):
@@ -201,13 +230,14 @@ def self_test():
         ("kernel", "f", 2), ("device function", "g", 1)]
     text = "namespace a {\nstruct Open {\n};\nnamespace {\n\nstruct Hidden : Open {\n};\nconstexpr double size = 3;\nvoid f(int a) {\n}\n}  // namespace\n}\n"
     assert list(hidden_types(text)) == ["Hidden", "size"], list(hidden_types(text))
+    assert list(imported_rooms("from ..a.b import c\n  from .. import d\nfrom .e import f\n")) == [(1, "a"), (2, "d")]
     assert floor_of("sim/engine.h") == "sim" and floor_of("vector") is None
 
 
 def main():
     self_test()
     root = pathlib.Path(sys.argv[1])
-    rules = (strange_folders, wrong_includes, types_twice, test_names_twice, hidden_types_twice, untested_kernels, long_files,
+    rules = (strange_folders, wrong_includes, wrong_imports, types_twice, test_names_twice, hidden_types_twice, untested_kernels, long_files,
              long_functions, many_arguments, careless_looks)
     problems = [problem for rule in rules for problem in rule(root)]
     print("\n".join(problems) or f"{sum(1 for _ in sources(root))} files in order")

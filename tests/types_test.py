@@ -7,8 +7,8 @@ import pathlib
 import subprocess
 import sys
 
-ROOMS = ("results", "observe", "report", "commands", "command.py", "diagnosing.py", "errors.py", "files.py", "look.py", "number_text.py",
-         "outputs.py", "program.py")
+ROOMS = ("results", "observe", "diagnosis", "report", "challenge", "commands", "checked_json.py", "command.py", "diagnosing.py", "errors.py",
+         "files.py", "look.py", "manifest.py", "number_text.py", "outputs.py", "parts.py", "program.py", "progress.py")
 
 
 def main():

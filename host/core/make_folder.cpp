@@ -19,10 +19,6 @@ void make_folder(const std::filesystem::path& folder) {
     expect_writable(folder);
 }
 
-void make_folder_of(const std::filesystem::path& file) {
-    make_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."));
-}
-
 void expect_writable(const std::filesystem::path& folder) {
     if (::access(folder.c_str(), W_OK | X_OK) != 0)
         throw RunError(folder.string() + ": cannot be written to: " + std::generic_category().message(errno));

@@ -7,9 +7,6 @@ namespace mcdem::inline core {
 /// is not writable. Called before long work, not after it.
 void make_folder(const std::filesystem::path& folder);
 
-/// The same for the folder of an output file.
-void make_folder_of(const std::filesystem::path& file);
-
 /// Throws RunError unless the folder exists and is writable.
 void expect_writable(const std::filesystem::path& folder);
 

@@ -22,12 +22,8 @@ struct Mark {
 };
 constexpr std::array marks{
     Mark{FileKind::run_table, "the table of a run", "replica,label,frame,cycle,phase,time_s,", ""},
-    Mark{FileKind::page, "a page of mcdem", "<!doctype html>", "<meta name=\"generator\" content=\"mcdem\">"},
-    Mark{FileKind::diagnosis, "a diagnosis", "{\n", "\"p_omnibus\""},
     Mark{FileKind::convergence, "a table of convergence", "{\n", "\"deviations\""},
     Mark{FileKind::calibration, "a calibration", "{\n", "\"target_top_force_N\""},
-    Mark{FileKind::score, "the score of a challenge", "{\n \"cases\"", "\"not_diagnosed\""},
-    Mark{FileKind::score_page, "the score of a challenge", "# Score of the challenge\n", ""},
     Mark{FileKind::figure, "a figure of mcdem", "", "mcdem figure"},
     Mark{FileKind::figure_values, "the values of figures", "{\n \"mcdem_figures\"", ""},
 };

@@ -9,17 +9,7 @@
 namespace mcdem::inline core {
 
 /// Files that a command writes again when it is run again.
-enum class FileKind {
-    run_table,
-    page,
-    diagnosis,
-    convergence,
-    calibration,
-    score,
-    score_page,
-    figure,
-    figure_values
-};
+enum class FileKind { run_table, convergence, calibration, figure, figure_values };
 
 /// Throws InputError unless the path is free, or holds an empty file or a file of this kind. Called before
 /// long work, and again by the functions below.

@@ -11,7 +11,7 @@
 #include "core/errors.h"
 #include "core/names.h"
 #include "core/parameters.h"
-#include "ensemble/diagnosis/diagnose_experiment.h"
+#include "ensemble/diagnosis/diagnosis_plan.h"
 #include "ensemble/make_packings.h"
 #include "experiment/experiment.h"
 #include "metrics/top_force.h"

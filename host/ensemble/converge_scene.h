@@ -7,7 +7,7 @@
 
 #include "cl/device.h"
 #include "core/stop.h"
-#include "diagnose/infer/convergence.h"
+#include "diagnose/convergence.h"
 #include "scene/scene.h"
 
 namespace mcdem::inline ensemble {

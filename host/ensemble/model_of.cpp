@@ -7,7 +7,7 @@
 
 #include "core/errors.h"
 #include "core/parameters.h"
-#include "ensemble/diagnosis/diagnose_experiment.h"
+#include "ensemble/diagnosis/diagnosis_plan.h"
 #include "scene/packing/packing_fields.h"
 #include "scene/programme/programme_text.h"
 

@@ -131,7 +131,7 @@ void missing_settings(const Experiment& experiment, Findings& findings) {
     std::vector<std::string> unknown, exact;
     for (const std::string& key : material_keys())
         if (!experiment.materials.count(key)) unknown.push_back(key);
-    // Parameters of a diagnosis (`nuisances` in diagnose/infer/effects.cpp).
+    // Parameters of a diagnosis (`nuisances` in diagnose/effects.cpp).
     for (const char* key : {"grains.youngs_modulus", "grains.friction", "walls.friction"})
         if (experiment.materials.count(key) && !experiment.uncertainty.count(key)) exact.push_back(key);
     if (!unknown.empty())

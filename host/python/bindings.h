@@ -13,9 +13,13 @@ namespace mcdem::inline python {
 void bind_scene(pybind11::module_& module);
 void bind_results(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
-void bind_diagnosis(pybind11::module_& module);
+void bind_convergence(pybind11::module_& module);
 void bind_comparison(pybind11::module_& module);
 void bind_path(pybind11::module_& module);
+void bind_random(pybind11::module_& module);
+void bind_simulations(pybind11::module_& module);
+void bind_case_simulator(pybind11::module_& module);
+void bind_diagnosis_tables(pybind11::module_& module);
 
 /// Converts values of scene keys to int, float, bool or str; None for an empty text.
 pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);

@@ -1,8 +1,10 @@
 // The extension module mcdem._engine; users import mcdem/__init__.py.
-#include <fmt/format.h>
 #include <pybind11/numpy.h>
+#include <pybind11/stl.h>
 
-#include "cl/opencl.h"
+#include <filesystem>
+
+#include "cl/error_text.h"
 #include "core/errors.h"
 #include "core/version.h"
 #include "io/run_packing.h"
@@ -12,15 +14,24 @@
 namespace mcdem::inline python {
 namespace {
 
-/// InputError becomes ValueError with the message of the program; other failures become RuntimeError.
+/// Raises the exception of that name in mcdem.errors.
+void raise(const char* name, const pybind11::object& what) {
+    const pybind11::object type = pybind11::module_::import("mcdem.errors").attr(name);
+    PyErr_SetObject(type.ptr(), type(what).ptr());
+}
+
+/// Errors that are reported to the user become those of the package (host/python/mcdem/errors.py).
 void translate(std::exception_ptr error) {
     try {
         if (error) std::rethrow_exception(error);
     } catch (const InputError& input) {
-        PyErr_SetString(PyExc_ValueError, input.what());
+        raise("InputError", pybind11::cast(input.problems()));
     } catch (const cl::Error& opencl) {
-        PyErr_SetString(PyExc_RuntimeError,
-                        fmt::format("OpenCL: {} failed with code {}", opencl.what(), opencl.err()).c_str());
+        raise("DeviceError", pybind11::cast(text_of(opencl)));
+    } catch (const RunError& run) {
+        raise("RunError", pybind11::cast(std::string(run.what())));
+    } catch (const std::filesystem::filesystem_error& file) {
+        raise("RunError", pybind11::cast(file.path1().string() + ": " + file.code().message()));
     }
 }
 
@@ -43,7 +54,11 @@ PYBIND11_MODULE(_engine, module) {
     mcdem::bind_scene(module);
     mcdem::bind_results(module);
     mcdem::bind_simulation(module);
-    mcdem::bind_diagnosis(module);
+    mcdem::bind_convergence(module);
     mcdem::bind_comparison(module);
     mcdem::bind_path(module);
+    mcdem::bind_random(module);
+    mcdem::bind_simulations(module);
+    mcdem::bind_case_simulator(module);
+    mcdem::bind_diagnosis_tables(module);
 }

@@ -5,8 +5,11 @@
 
 #include <charconv>
 
+#include "core/version.h"
+#include "ensemble/parts/manifest.h"
 #include "python/bindings.h"
 #include "scene/read/read_scene.h"
+#include "scene/read/scene_warnings.h"
 
 namespace mcdem::inline python {
 namespace {
@@ -103,6 +106,18 @@ void bind_scene(py::module_& module) {
             return "<mcdem.Scene " + scene.name + ": " + std::to_string(scene.replicas.size()) + " replica" +
                    (scene.replicas.size() == 1 ? ">" : "s>");
         });
+    module.def(
+        "scene_of_options",
+        [](const std::string& file, const std::vector<std::string>& overrides) {
+            Scene scene = read_scene(file, overrides);
+            const auto warnings = scene_warnings(scene);
+            return py::make_tuple(std::move(scene), warnings);
+        },
+        py::arg("file"), py::arg("overrides"),
+        "A scene file with overrides \"key=value\", and warnings about its packing files.");
+    module.def(
+        "manifest_of", [](const Scene& scene) { return manifest_of(scene, version_text); }, py::arg("scene"),
+        "Everything but the device that determines the bits of a run: names and digests.");
 }
 
 }  // namespace mcdem::python

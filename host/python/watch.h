@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core/errors.h"
+#include "ensemble/diagnosis/simulations.h"
 
 namespace mcdem::inline python {
 
@@ -83,6 +84,21 @@ pybind11::object json_result(Watch& watch, Work work) {
     }
     watch.raise();
     return pybind11::module_::import("json").attr("loads")(text);
+}
+
+/// Calls `work` with the progress of a Python callable and without the GIL.
+template <class Work>
+auto watched(pybind11::object progress, Work work) {
+    Watch watch(std::move(progress));
+    decltype(work(SimulationProgress())) result{};
+    try {
+        const pybind11::gil_scoped_release others_go_on;
+        result = work(SimulationProgress{[&](double part) { watch.show_progress(part); },
+                                         [&] { return watch.stop_wanted(); }});
+    } catch (const Interrupted&) {
+    }
+    watch.raise();
+    return result;
 }
 
 }  // namespace mcdem::python

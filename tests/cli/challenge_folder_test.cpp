@@ -20,6 +20,7 @@ const char* const shared = "other programs share work there: wait for them";
 class ChallengeFolderTest : public CliTest {
 protected:
     void SetUp() override {
+        NEEDS_PYTHON_MODULE();
         write_tiny_scene(folder_.path);
         expect_done(mcdem({"challenge", "make", "tiny.toml", "--out", "challenge", "--effects",
                            "friction,force_bias", "--none", "1", "--pairs", "0", "--per-effect", "0",

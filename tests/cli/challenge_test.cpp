@@ -5,10 +5,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "challenge/outside.h"
 #include "cli/tiny_challenge.h"
 #include "core/sha256.h"
-#include "diagnose/infer/effects.h"
+#include "diagnose/effects.h"
+#include "ensemble/diagnosis/outside_effects.h"
 #include "experiment/experiment.h"
 
 namespace mcdem {
@@ -37,6 +37,7 @@ std::map<std::string, std::string> contents_of(const fs::path& folder) {
 class ChallengeTest : public testing::Test {
 protected:
     static void SetUpTestSuite() {
+        if (!MCDEM_TEST_PYTHON) return;
         folder_ = new TestFolder;
         write_tiny_scene(folder_->path);
         made_ = new Finished(mcdem(make_challenge_words));
@@ -51,6 +52,7 @@ protected:
         delete ran_;
     }
     void SetUp() override {
+        NEEDS_PYTHON_MODULE();
         ASSERT_EQ(made_->exit_code, 0) << made_->err;
         ASSERT_EQ(ran_->exit_code, 0) << ran_->err;
     }

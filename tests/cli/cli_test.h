@@ -11,6 +11,10 @@
 
 namespace mcdem {
 
+/// Ends a test of commands that need the compiled module of the Python package where that was not built.
+#define NEEDS_PYTHON_MODULE() \
+    if (!MCDEM_TEST_PYTHON) GTEST_SKIP() << "the Python module was not built (pybind11-dev, python3-dev)"
+
 class CliTest : public testing::Test {
 protected:
     CliTest() { std::ofstream(path("small.toml")) << small_scene_text; }
@@ -42,12 +46,25 @@ protected:
         }
     }
     void let_go_on(const Child& child) const { std::filesystem::remove(held_file(child)); }
+    /// Of the child, or of the interpreter that it has started.
     std::filesystem::path held_file(const Child& child) const {
+        for (const auto& file : std::filesystem::directory_iterator(path("held")))
+            if (parent_of(file.path().filename()) == child.process()) return file;
         return path("held") / std::to_string(child.process());
     }
     void expect_done(const Finished& finished) const { EXPECT_EQ(finished.exit_code, 0) << finished.err; }
 
     TestFolder folder_;
+
+private:
+    /// 0: the process is not there.
+    static pid_t parent_of(const std::string& process) {
+        std::ifstream status("/proc/" + process + "/status");
+        pid_t parent = 0;
+        for (std::string word; status >> word;)
+            if (word == "PPid:" && status >> parent) break;
+        return parent;
+    }
 };
 
 /// Bad input: checks the exit code and a part of the message; every line begins with the program's name.

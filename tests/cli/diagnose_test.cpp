@@ -13,7 +13,10 @@ namespace fs = std::filesystem;
 
 class DiagnoseTest : public CliTest {
 protected:
-    DiagnoseTest() { write_tiny_scene(folder_.path); }
+    void SetUp() override {
+        NEEDS_PYTHON_MODULE();
+        write_tiny_scene(folder_.path);
+    }
 
     /// An experiment with another packing, and the scene with these changes.
     void experiment(const Words& changes, const std::string& folder = "e", int seed = 5) {

@@ -241,6 +241,7 @@ TEST_F(ExperimentCommandTest, ErrorsInTablesAreReportedWithTheirLines) {
 
 // Both commands name missing data in the same words, before any simulation.
 TEST_F(ExperimentCommandTest, CheckAndDiagnoseReportTheSameMissingData) {
+    NEEDS_PYTHON_MODULE();
     run("a");
     expect_done(from_run("e", {"--replica", "0"}));
     EXPECT_THAT(mcdem({"experiment", "check", "e"}).out,
@@ -265,6 +266,7 @@ TEST_F(ExperimentCommandTest, CheckAndDiagnoseReportTheSameMissingData) {
 }
 
 TEST_F(ExperimentCommandTest, IsDiagnosedByOneProcessPerFolder) {
+    NEEDS_PYTHON_MODULE();
     run("a");
     expect_done(from_run("e", {"--replica", "1"}));
     fs::create_directory(path("out"));
@@ -354,6 +356,7 @@ TEST_F(ExperimentCommandTest, ARunWithGrainsOutsideTheBoxIsExplained) {
 }
 
 TEST_F(ExperimentCommandTest, ALibraryOfAnotherSceneIsRefused) {
+    NEEDS_PYTHON_MODULE();
     run("a");
     expect_done(from_run("e", {"--replica", "elastic_sphere"}));
     const auto diagnose = [&](const std::string& friction) {

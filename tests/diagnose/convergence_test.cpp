@@ -1,5 +1,5 @@
 // Discretisation errors from paired runs: known errors are found, and are separated from chaotic scatter.
-#include "diagnose/infer/convergence.h"
+#include "diagnose/convergence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The table of effects: each effect changes its own parameter and nothing else.
-#include "diagnose/infer/effects.h"
+#include "diagnose/effects.h"
 
 #include <gmock/gmock.h>
 

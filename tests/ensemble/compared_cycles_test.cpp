@@ -2,8 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "ensemble/diagnosis/diagnose_experiment.h"
-#include "ensemble/parts/library_parts.h"
+#include "ensemble/diagnosis/diagnosis_plan.h"
 #include "ensemble/run_scene.h"
 #include "ensemble/small_trials.h"
 #include "io/results.h"
@@ -37,7 +36,7 @@ Experiment experiment_of(int cycles) {
 }
 
 DiagnosisPlan plan(const Scene& scene, const Experiment& experiment, std::vector<std::string>* notes) {
-    DiagnoseOptions options;
+    PlanOptions options;
     options.on_note = [=](const std::string& note) { notes->push_back(note); };
     return plan_of(scene, {experiment}, options);
 }

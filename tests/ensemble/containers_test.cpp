@@ -1,7 +1,7 @@
 // Runs with containers of several shapes in one batch, and commands that do not support them.
 #include "core/container.h"
 #include "core/errors.h"
-#include "ensemble/diagnosis/diagnose_experiment.h"
+#include "ensemble/diagnosis/diagnosis_plan.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/run_scene.h"
 #include "ensemble/small_scene.h"

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "ensemble/diagnosis/diagnose_experiment.h"
 #include "ensemble/small_trials.h"
 
 namespace mcdem {
@@ -91,74 +90,6 @@ TEST(OtherProtocols, AreNotMadeOfAProgramme) {
     Replica replica = small.model.replica;
     replica.programme.resize(1);
     EXPECT_TRUE(other_protocols(small.common, replica, true).empty());
-}
-
-/// A scene with little friction and an experiment with adhesion, whose plate is said to pause for 0.2 s at
-/// this speed [m/s]. The candidates are two laws of adhesion, which differ only in their friction.
-Diagnosis diagnosis_with_pauses(double speed) {
-    const TestFolder folder;
-    Device device;
-    Scene scene = small_scene({"plate.end=0.074", "plate.speed=0.03", "protocol.scans_per_stroke=6",
-                               "protocol.stop_at_scans=false", "protocol.scan_at_start=true",
-                               "contact.friction_law=saturated", "grains.friction=0.001"});
-    scene.replicas.resize(1);
-    Trial truth{{scene.replicas.front(), {{1e-5, 1e-5, 0.01, 1e-4}}}, make_packings(scene).front()};
-    truth.model.replica.effects.adhesion = 0.3;  // from 0.15 on both take away all of the gap
-    truth.keep_recording = true;
-    const TrialSettings common{scene, Grid{{0.01}, 0.005, 0.014}, reference_material(truth.model), 0, "test"};
-    const ObservationStore store(folder.path / "simulations");
-    observe_trials(device, common, {truth}, store, {});
-    Experiment experiment;
-    experiment.name = "measured";
-    experiment.recording = kept_recordings(device, common, {truth}, store).front();
-    experiment.measurement = truth.model.instrument.stated;
-    experiment.plate_pause = 0.2;
-    experiment.plate_speed = speed;
-    DiagnoseOptions options;
-    options.folder = folder.path / "diagnosis";
-    options.candidates = {"adhesion", "adhesion_net_friction"};
-    options.replicates = 8;
-    options.pairs = 2;
-    options.confirmations = 4;
-    options.limits.group_share = 0.3;  // both are in one group, but not the modulus, which gains half of that
-    return diagnose_experiment(device, scene, {experiment}, options);
-}
-
-bool recommends_motion(const Diagnosis& diagnosis) {
-    return std::ranges::any_of(diagnosis.next, [](const NextStep& step) {
-        return step.what.starts_with("simulate the motion of the experiment's plate");
-    });
-}
-
-// The plate is 30 times slower than that of the scene: pauses are recommended, not simulated.
-TEST(OtherProtocols, GetAPowerInADiagnosis) {
-    const Diagnosis diagnosis = diagnosis_with_pauses(0.001);
-    ASSERT_EQ(diagnosis.verdict, Verdict::group);
-    int powers = 0;
-    for (const NextStep& step : diagnosis.next)
-        for (const char* what : {"hold the plate at full stroke for 0.3 s, to distinguish adhesion",
-                                 "press one more cycle, to distinguish adhesion"})
-            if (step.what.starts_with(what)) {
-                ASSERT_TRUE(step.power);
-                EXPECT_TRUE(*step.power >= 0 && *step.power <= 1) << *step.power;
-                ++powers;
-            }
-    EXPECT_EQ(powers, 2);
-    EXPECT_TRUE(recommends_motion(diagnosis));
-    EXPECT_TRUE(diagnosis.refinements.empty());
-}
-
-TEST(OtherProtocols, PausesOfThePlateAreSimulatedIfThereIsAGap) {
-    const Diagnosis diagnosis = diagnosis_with_pauses(0.06);
-    ASSERT_EQ(diagnosis.refinements.size(), 2u);
-    const Refinement &pause = diagnosis.refinements[0], &speed = diagnosis.refinements[1];
-    EXPECT_EQ(pause.key, "protocol.pause");
-    EXPECT_EQ(pause.to, 0.02) << "relax_time: grains rest by then";
-    EXPECT_EQ(speed.key, "plate.speed");
-    EXPECT_EQ(speed.from, 0.03);
-    EXPECT_EQ(speed.to, 0.06);
-    EXPECT_TRUE(pause.done && speed.done);
-    EXPECT_FALSE(recommends_motion(diagnosis));
 }
 
 }  // namespace

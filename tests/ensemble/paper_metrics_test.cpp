@@ -27,13 +27,12 @@ Recording stroke(double stiffness) {
 }
 
 TEST(PaperMetrics, BeforeAndAfterAreCorrect) {
-    GapReduction gap_reduction;
     const double stiffness = 1e4;  // 1 N at 10 mm
-    add_paper_metrics(gap_reduction, stroke(stiffness),
-                      {{stroke(0.5 * stiffness), stroke(0.7 * stiffness)}, {stroke(1.1 * stiffness)}});
-    ASSERT_EQ(gap_reduction.metrics.size(), 2u);  // no contacts: without errZ and bhat
-    const auto& [Rtop, ratios] = gap_reduction.metrics[0];
-    const auto& [errf, errors] = gap_reduction.metrics[1];
+    const PaperMetrics metrics = paper_metrics(
+        stroke(stiffness), {{stroke(0.5 * stiffness), stroke(0.7 * stiffness)}, {stroke(1.1 * stiffness)}});
+    ASSERT_EQ(metrics.values.size(), 2u);  // no contacts: without errZ and bhat
+    const auto& [Rtop, ratios] = metrics.values[0];
+    const auto& [errf, errors] = metrics.values[1];
     EXPECT_EQ(Rtop, "Rtop");
     EXPECT_NEAR(ratios[0], 0.6, 1e-12);
     EXPECT_NEAR(ratios[1], 1.1, 1e-12);
@@ -42,9 +41,9 @@ TEST(PaperMetrics, BeforeAndAfterAreCorrect) {
     EXPECT_EQ(errf, "errf");
     EXPECT_NEAR(errors[0], 0.4 * std::sqrt(mean_square), 1e-12);
     EXPECT_NEAR(errors[1], 0.1 * std::sqrt(mean_square), 1e-12);
-    ASSERT_EQ(gap_reduction.top_force.size(), 5u);
+    ASSERT_EQ(metrics.top_force.size(), 5u);
     for (int k = 1; k <= 5; ++k) {
-        const auto& row = gap_reduction.top_force[static_cast<std::size_t>(k - 1)];
+        const auto& row = metrics.top_force[static_cast<std::size_t>(k - 1)];
         EXPECT_NEAR(row[0], 0.002 * k, 1e-12);
         EXPECT_NEAR(row[1], 0.04 * k * k, 1e-12);
         EXPECT_NEAR(row[2], 0.6 * 0.04 * k * k, 1e-12);

@@ -1,8 +1,7 @@
 #include "ensemble/diagnosis/plate_motion.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
-
-#include <sstream>
 
 #include "ensemble/small_scene.h"
 
@@ -65,24 +64,24 @@ TEST(PlateMotion, OfTheSceneIsKept) {
     EXPECT_FALSE(neglected(with_programme));
 }
 
-/// The values of --set in the advice.
-std::vector<std::string> advised(const Replica& replica, const PlateMotion& motion) {
+/// Settings that make these changes.
+std::vector<std::string> settings_of(const Replica& replica, const PlateMotion& motion) {
     std::vector<std::string> settings;
-    std::istringstream words(simulate_motion(replica, motion).what);
-    for (std::string word; words >> word;)
-        if (word == "--set") words >> settings.emplace_back();
+    if (motion.pause > 0) settings.push_back("protocol.stop_at_scans=true");
+    for (const SettingChange& change : changes(replica, motion))
+        settings.push_back(fmt::format("{}={}", change.key, change.to));
     return settings;
 }
 
-TEST(PlateMotion, TheAdviceMakesTheSameScene) {
+TEST(PlateMotion, ItsChangesAreSettingsThatMakeTheSameScene) {
     const std::vector<std::string> given{"protocol.stop_at_scans=false", "protocol.rate_tolerance=0.01"};
     for (const PlateMotion& motion : {PlateMotion{0.02, 0.01, 0.03}, PlateMotion{0.02, 0, 0.03}}) {
         Replica replica = small_scene(given).replicas.front();
-        std::vector<std::string> settings = advised(replica, motion);
+        std::vector<std::string> settings = settings_of(replica, motion);
         settings.insert(settings.begin(), given.begin(), given.end());
         apply(replica, motion);
-        const Replica advice = small_scene(settings).replicas.front();
-        for (const Replica* one : std::initializer_list<const Replica*>{&replica, &advice}) {
+        const Replica set = small_scene(settings).replicas.front();
+        for (const Replica* one : std::initializer_list<const Replica*>{&replica, &set}) {
             EXPECT_EQ(one->protocol.stop_at_scans, motion.pause > 0);
             EXPECT_EQ(one->protocol.pause, motion.pause);
             EXPECT_EQ(one->protocol.hold, 0.03);

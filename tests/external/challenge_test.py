@@ -110,26 +110,26 @@ def test_yade(folder):
     assert most > 0.049, most
 
 
-def answered(kind, effects, verdict, causes=(), limit=0.01):
+def answered(challenge, kind, effects, verdict, causes=(), limit=0.01):
     listed = [{"effect": e, "group": [e], "amplitude": a, "amplitude_error": 0.01, "at_limit": False, "confidence": p} for e, a, p in causes]
-    return {"kind": kind, "code": "lammps", "effects": [{"name": n, "amplitude": a} for n, a in effects],
-            "answer": {"verdict": verdict, "causes": listed, "shrink": {"fraction": 0.9, "confirmed": 0.95},
-                       "detection_limits": [{"effect": n, "minimum_amplitude": limit} for n, _ in effects]}}
+    return challenge.case_of({"kind": kind, "code": "lammps", "effects": [{"name": n, "amplitude": a} for n, a in effects]},
+                             {"verdict": verdict, "causes": listed, "shrink": {"fraction": 0.9, "confirmed": 0.95},
+                              "detection_limits": [{"effect": n, "minimum_amplitude": limit} for n, _ in effects]})
 
 
 def test_score(challenge):
-    cases = [
-        answered("none", [], "no_gap"),
-        answered("none", [], "effect", [("friction", 0.05, 0.9)]),
-        answered("effect", [("friction", 0.05)], "effect", [("friction", 0.06, 0.9)]),
-        answered("effect", [("friction", 0.05)], "effect", [("adhesion", 0.1, 0.5)]),
-        answered("effect", [("friction", 0.05)], "no_gap", limit=0.04),  # not clear
-        answered("effect", [("adhesion", 0.5)], "unknown_effect", [("adhesion", 0.5, 0.2)]),
-        answered("pair", [("friction", 0.05), ("adhesion", 0.5)], "effect", [("adhesion", 0.5, 0.9), ("friction", 0.05, 0)]),
-        answered("pair", [("friction", 0.05), ("adhesion", 0.5)], "effect", [("adhesion", 0.5, 0.9)]),
-        answered("unknown", [("barrel", 0.1)], "effect", [("adhesion", 0.5, 0.8)]),
-        answered("unknown", [("barrel", 0.1)], "unknown_effect"),
-    ]
+    cases = [answered(challenge, *case) for case in (
+        ("none", [], "no_gap"),
+        ("none", [], "effect", [("friction", 0.05, 0.9)]),
+        ("effect", [("friction", 0.05)], "effect", [("friction", 0.06, 0.9)]),
+        ("effect", [("friction", 0.05)], "effect", [("adhesion", 0.1, 0.5)]),
+        ("effect", [("friction", 0.05)], "no_gap", (), 0.04),  # not clear
+        ("effect", [("adhesion", 0.5)], "unknown_effect", [("adhesion", 0.5, 0.2)]),
+        ("pair", [("friction", 0.05), ("adhesion", 0.5)], "effect", [("adhesion", 0.5, 0.9), ("friction", 0.05, 0)]),
+        ("pair", [("friction", 0.05), ("adhesion", 0.5)], "effect", [("adhesion", 0.5, 0.9)]),
+        ("unknown", [("barrel", 0.1)], "effect", [("adhesion", 0.5, 0.8)]),
+        ("unknown", [("barrel", 0.1)], "unknown_effect"),
+    )]
     told = challenge.figures(cases)
     assert told["no effect: a gap is claimed"].startswith("1 of 2:")
     assert told["one clear effect: detected"].startswith("3 of 3:")

@@ -5,10 +5,12 @@ import math
 import random
 import statistics
 
-from mcdem.report.diagnosis import VERDICTS, Diagnosis, diagnosis_of
+from mcdem.diagnosis.diagnosis_types import Diagnosis, Verdict
+from mcdem.report.diagnosis import diagnosis_of
 
 __all__ = ["OBSERVABLES", "VERDICTS", "bare", "cause", "cell", "entry", "fit", "missing", "of", "packing", "sample", "with_texts"]
 
+VERDICTS = tuple(map(str, Verdict))
 OBSERVABLES = (
     "top_force floor_force side_force plate_couple_x plate_couple_y coordination_number weak_contacts mean_force force_spread weak_forces "
     "strong_forces force_anisotropy vertical_gradient non_affine attraction friction_ratio friction_high wall_friction_ratio "

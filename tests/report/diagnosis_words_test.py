@@ -4,8 +4,8 @@ import pathlib
 import re
 import unittest
 
+from mcdem.diagnosis.diagnosis_types import Cause, MissingBins, NextStep, NuisanceFit, Refinement, WhereEntry
 from mcdem.report import diagnosis_words as words
-from mcdem.report.diagnosis import Cause, MissingBins, NextStep, NuisanceFit, Refinement, WhereEntry
 from mcdem.report.effect_names import EFFECTS, OBSERVABLES
 
 HOST = pathlib.Path(__file__).parents[2] / "host"
@@ -93,7 +93,7 @@ class Tables(unittest.TestCase):
     def test_effects(self):
         rows = [[name, effect.words, effect.amplitude, effect.source] for name, effect in EFFECTS.items()]
         found = r'^    \{("\w+", "[^"]*"), "[^"]*"(, "(?:[^"\\]|\\.)*", "(?:[^"\\]|\\.)*"),$'
-        text = (HOST / "diagnose/infer/effects.cpp").read_text("utf-8")
+        text = (HOST / "diagnose/effects.cpp").read_text("utf-8")
         in_program = [[re.sub(r"\\(.)", r"\1", one) for one in re.findall(r'"((?:[^"\\]|\\.)*)"', first + rest)]
                       for first, rest in re.findall(found, text, re.MULTILINE)]
         self.assertEqual(rows, in_program)

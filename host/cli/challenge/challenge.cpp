@@ -6,7 +6,7 @@ void add_challenge(CLI::App& app, int& exit_code) {
     auto* sub =
         app.add_subcommand("challenge", "Test the diagnosis on simulated experiments with hidden effects");
     sub->require_subcommand(1);
-    for (const auto add : {add_challenge_make, add_challenge_run, add_challenge_score}) add(*sub, exit_code);
+    add_python_commands(*sub, exit_code);
     sub->footer(
         "`make` simulates experiments with hidden effects and writes the truth to a separate file; `run`\n"
         "diagnoses the experiments without that file; `score` compares the diagnoses with the truth.\n"

@@ -14,7 +14,7 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "core/make_folder.h"
-#include "diagnose/infer/effects.h"
+#include "diagnose/effects.h"
 #include "experiment/instrument.h"
 #include "io/results.h"
 #include "metrics/replicas.h"

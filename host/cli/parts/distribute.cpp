@@ -1,4 +1,3 @@
-#include <cstdlib>
 
 #include "cli/shell/commands.h"
 #include "cli/shell/python_program.h"
@@ -17,7 +16,6 @@ struct DistributeCommand {
 int run(const DistributeCommand& command) {
     if (command.words.empty())
         throw InputError("a command is needed: run, challenge run or diagnose, with its options");
-    ::setenv("MCDEM_PROGRAM", this_program().c_str(), 1);
     std::vector<std::string> words{std::to_string(command.tries), command.scheduler};
     words.insert(words.end(), command.words.begin(), command.words.end());
     return run_python_module("mcdem.distributed", words);

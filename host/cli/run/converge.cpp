@@ -9,7 +9,7 @@
 #include "cli/shell/standard_streams.h"
 #include "core/output_file.h"
 #include "core/version.h"
-#include "diagnose/infer/convergence_json.h"
+#include "diagnose/convergence_json.h"
 #include "ensemble/converge_scene.h"
 #include "io/result_folder.h"
 

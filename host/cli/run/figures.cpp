@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/shell/commands.h"
-#include "cli/shell/messages.h"
 #include "cli/shell/python_program.h"
 #include "core/errors.h"
 #include "core/output_file.h"
@@ -31,32 +28,6 @@ void expect_replaceable_figures(const fs::path& folder, const std::vector<std::s
     for (const auto& name : names)
         for (const char* ending : {".pdf", ".png", ".svg"})
             expect_replaceable(folder / (name + ending), FileKind::figure);
-}
-
-std::vector<fs::path> draw_figures(const fs::path& folder, const nlohmann::ordered_json& values) {
-    std::vector<std::string> names;
-    std::vector<fs::path> figures;
-    for (const auto& [name, _] : values.items()) {
-        names.push_back(name);
-        figures.push_back(folder / (name + ".png"));
-    }
-    expect_replaceable_figures(folder, names);
-    nlohmann::ordered_json file{{"mcdem_figures", 1}};
-    file.update(values);
-    replace_own(folder / values_file, FileKind::figure_values,
-                file.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-    run_python("mcdem.figures", {(folder / values_file).string()},
-               (folder / values_file).string() + " could not be drawn");
-    return figures;
-}
-
-std::vector<fs::path> draw_if_possible(const std::function<std::vector<fs::path>()>& draw) {
-    try {
-        return draw();
-    } catch (const std::exception& error) {
-        spdlog::warn("no figures: {}", error.what());
-        return {};
-    }
 }
 
 void present(const std::string& name, const std::vector<std::string>& arguments) {

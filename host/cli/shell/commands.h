@@ -17,17 +17,15 @@ void add_run(CLI::App& app, int& exit_code);
 void add_distribute(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
 void add_converge(CLI::App& app, int& exit_code);
-void add_diagnose(CLI::App& app, int& exit_code);
 void add_challenge(CLI::App& app, int& exit_code);
-void add_challenge_make(CLI::App& challenge, int& exit_code);
-void add_challenge_run(CLI::App& challenge, int& exit_code);
-void add_challenge_score(CLI::App& challenge, int& exit_code);
+/// Those of the program, or of its command `challenge`.
 void add_python_commands(CLI::App& app, int& exit_code);
 void add_experiment(CLI::App& app, int& exit_code);
 void add_completion(CLI::App& app, int& exit_code);
 
-/// Whether the Python package runs the command; its arguments are passed on unread.
-bool is_python_command(const std::string& name);
+/// Whether the Python package runs the command that these words begin with; its arguments are passed on
+/// unread.
+bool is_python_command(const std::vector<std::string>& words);
 
 /// Checks of finite numbers. CLI11's own checks print the largest double with its 309 digits.
 const CLI::Validator& at_least_zero();

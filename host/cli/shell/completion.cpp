@@ -47,7 +47,7 @@ void offer_values(const CLI::Option& option, const std::string& word) {
 /// The candidates for the last word of a command line. `:files` and `:folders` stand for those that the shell
 /// finds.
 void complete(const CLI::App& app, std::vector<std::string> words) {
-    if (words.size() > 1 && is_python_command(words.front())) {
+    if (words.size() > 1 && is_python_command(words)) {
         words.insert(words.begin(), "complete");
         run_python_module("mcdem.run_command", words);
         return;

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "cl/opencl.h"
+#include "cl/error_text.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
 #include "core/errors.h"
@@ -32,21 +32,6 @@ void say_lines(const std::string& text) {
     for (std::string line; std::getline(lines, line);) spdlog::error("{}", line);
 }
 
-/// Advice for an OpenCL error. Drivers use CL_OUT_OF_RESOURCES for both.
-const char* remedy_of(cl_int code) {
-    switch (code) {
-        case CL_MEM_OBJECT_ALLOCATION_FAILURE:
-            return "the device has not enough memory; run fewer replicas at a time";
-        case CL_OUT_OF_RESOURCES:
-            return "the device has not enough memory (run fewer replicas at a time), or it has failed "
-                   "(`mcdem devices` lists those that answer)";
-        default:
-            return "the device or its driver has failed (`mcdem devices` lists those that answer), or, with "
-                   "PoCL, its compiled kernels are damaged (remove the folder that POCL_CACHE_DIR names, "
-                   "~/.cache/pocl/kcache or mcdem-kernels-.. in /tmp)";
-    }
-}
-
 }  // namespace
 
 void set_up_messages() {
@@ -69,8 +54,7 @@ int report_error(const std::exception& error) {
         return exit_interrupted;
     }
     if (const auto* opencl = dynamic_cast<const cl::Error*>(&error))
-        spdlog::error("OpenCL: {} failed with code {}: {}", opencl->what(), opencl->err(),
-                      remedy_of(opencl->err()));
+        spdlog::error("{}", text_of(*opencl));
     else if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
         spdlog::error("{}: {}", file->path1().string(), file->code().message());
     else if (dynamic_cast<const std::bad_alloc*>(&error))

@@ -1,43 +1,53 @@
 // Commands of the Python package (host/python/mcdem/commands).
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 
 #include "cli/shell/commands.h"
 #include "cli/shell/python_program.h"
-#include "cli/shell/subprocess.h"
 
 namespace mcdem::inline cli {
 namespace {
 
 struct PythonCommand {
-    const char *name, *about;
+    std::string command, name, about;  ///< `command`: of which it is a subcommand; empty: of the program
 };
-constexpr std::array python_commands{
-    PythonCommand{"table",
+const std::array python_commands{
+    PythonCommand{"", "table",
                   "Show the top force of each setting, ratios and the scaling law; programmes scan by scan"},
-    PythonCommand{"compare", "Compare runs with an experiment or another run: the paper's table"},
-    PythonCommand{"figures",
+    PythonCommand{"", "compare", "Compare runs with an experiment or another run: the paper's table"},
+    PythonCommand{"", "figures",
                   "Draw the figures of runs (top force, force distribution, Z, scaling law; others for "
                   "programmes) or of a diagnosis"},
-    PythonCommand{"report", "Write an HTML page of runs and diagnoses: charts, packings in 3D, tables"},
-    PythonCommand{"export", "Write grains and contacts for ParaView or OVITO"},
+    PythonCommand{"", "report", "Write an HTML page of runs and diagnoses: charts, packings in 3D, tables"},
+    PythonCommand{"", "export", "Write grains and contacts for ParaView or OVITO"},
+    PythonCommand{"", "diagnose",
+                  "Find where a simulation and an experiment differ, and which effect is consistent with the "
+                  "difference"},
+    PythonCommand{"challenge", "make",
+                  "Simulate experiments with hidden effects, and write the truth to a separate file"},
+    PythonCommand{"challenge", "run", "Diagnose every experiment of a challenge"},
+    PythonCommand{"challenge", "score", "Compare the diagnoses with the truth"},
 };
 
 }  // namespace
 
-bool is_python_command(const std::string& name) {
-    return std::ranges::any_of(python_commands, [&](const PythonCommand& one) { return name == one.name; });
+bool is_python_command(const std::vector<std::string>& words) {
+    return std::ranges::any_of(python_commands, [&](const PythonCommand& one) {
+        if (one.command.empty()) return words.front() == one.name;
+        return words.size() > 2 && words[0] == one.command && words[1] == one.name;
+    });
 }
 
 void add_python_commands(CLI::App& app, int& exit_code) {
-    for (const auto& [name, about] : python_commands) {
-        auto* sub = app.add_subcommand(name, about)->prefix_command();
+    const std::string above = app.get_parent() ? app.get_name() : "";
+    for (const PythonCommand& one : python_commands) {
+        if (one.command != above) continue;
+        auto* sub = app.add_subcommand(one.name, one.about)->prefix_command();
         sub->set_help_flag();  // it is the package's
-        sub->callback([sub, &exit_code] {
+        sub->callback([sub, above, &exit_code] {
             std::vector<std::string> words{sub->get_name()};
+            if (!above.empty()) words.insert(words.begin(), above);
             for (const std::string& word : sub->remaining()) words.push_back(word);
-            ::setenv("MCDEM_PROGRAM", this_program().c_str(), 1);
             exit_code = run_python_module("mcdem.run_command", words);
         });
     }

@@ -48,12 +48,24 @@ std::string interpreter() {
     return in_search_path("python3");
 }
 
+/// Where the package may be: with its compiled module where Python's packages are installed, or in the build
+/// folder; without it beside the data of the program, or in the sources.
+std::vector<fs::path> package_folders() {
+    const fs::path bin = this_program().parent_path(), prefix = bin.parent_path();
+    std::vector<fs::path> folders;
+    if (is_folder(prefix / "lib"))
+        for (const fs::path& entry : entries_of(prefix / "lib"))
+            if (entry.filename().string().starts_with("python3"))
+                for (const char* packages : {"dist-packages", "site-packages"})
+                    if (is_there(entry / packages / "mcdem/start.py")) folders.push_back(entry / packages);
+    folders.insert(folders.end(), {prefix / "share/mcdem/python", bin / "python", MCDEM_SOURCE_PYTHON});
+    return folders;
+}
+
 /// The file that starts commands (host/python/mcdem/start.py), in the package's folder.
 fs::path start_file() {
     const std::string chosen = variable("MCDEM_PYTHON_FOLDER");
-    std::vector<fs::path> folders{chosen};
-    if (chosen.empty())
-        folders = {this_program().parent_path().parent_path() / "share/mcdem/python", MCDEM_SOURCE_PYTHON};
+    const std::vector<fs::path> folders = chosen.empty() ? package_folders() : std::vector<fs::path>{chosen};
     for (const fs::path& folder : folders)
         if (is_there(folder / "mcdem/start.py")) return fs::canonical(folder / "mcdem") / "start.py";
     std::string looked;
@@ -102,6 +114,7 @@ int run_python_module(const std::string& module, const std::vector<std::string>&
     // writes no bytecode beside the package.
     std::vector<std::string> words{python, "-E", "-s", "-B", start_file().string(), module};
     words.insert(words.end(), arguments.begin(), arguments.end());
+    ::setenv("MCDEM_PROGRAM", this_program().c_str(), 1);
     std::fflush(stdout);  // otherwise its output would come first
     const ProgramEnd end = end_of(start(words));
     if (end.exit_code == not_found)

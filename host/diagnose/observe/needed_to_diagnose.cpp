@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "diagnose/observe/observation.h"
 
@@ -64,25 +63,6 @@ std::vector<std::string> needed_to_diagnose(const Experiment& experiment) {
             "with that error too; add to [measurement] a line such as `force_error = 0.05 # relative`");
     for (std::string& text : needed) text = experiment.name + ": " + text;
     return needed;
-}
-
-std::vector<std::string> not_measured(const Eigen::VectorXd& observed, const Grid& grid) {
-    std::set<Needs> seen;
-    const auto cells = cells_of(grid);
-    for (std::size_t k = 0; k < cells.size(); ++k)
-        if (std::isfinite(observed[k])) seen.insert(observables()[cells[k].observable].needs);
-    std::vector<std::string> texts;
-    if (!seen.count(Needs::contacts))
-        texts.push_back(
-            "contacts.csv: the forces of contacts would tell the force distribution, the floor's and the "
-            "walls' share, the "
-            "plate's couple and biases of the force measurement");
-    if (!seen.count(Needs::positions))
-        texts.push_back(
-            "grains.csv beyond frame 0, with contacts.csv: positions would tell the overlaps that the forces "
-            "should imply, "
-            "hence cross-contact effects, stiffening, adhesion, friction and errors of sizes");
-    return texts;
 }
 
 }  // namespace mcdem::diagnose

@@ -1,4 +1,4 @@
-// Checks whether an experiment can be diagnosed, before anything is simulated, and what more data would tell.
+// Checks whether an experiment can be diagnosed, before anything is simulated.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,8 +14,5 @@ inline constexpr std::size_t min_cells = 4;
 /// Data that `mcdem diagnose` needs and the experiment lacks, each with a remedy; empty if it can be
 /// diagnosed.
 std::vector<std::string> needed_to_diagnose(const Experiment& experiment);
-
-/// One sentence for each file whose observables are missing in all scans.
-std::vector<std::string> not_measured(const Eigen::VectorXd& observed, const Grid& grid);
 
 }  // namespace mcdem::diagnose

@@ -130,8 +130,6 @@ std::vector<Cell> cells_of(const Grid& grid) {
     return cells;
 }
 
-Eigen::Index cells_each(Eigen::Index all) { return all / static_cast<Eigen::Index>(observables().size()); }
-
 namespace {
 
 /// Observables of a scan in a stroke. Of displacement and force, only the one that is not prescribed.

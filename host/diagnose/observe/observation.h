@@ -40,9 +40,6 @@ struct Cell {
 /// The cells of a grid: by observable, then phase, then displacement.
 std::vector<Cell> cells_of(const Grid& grid);
 
-/// Number of cells of each observable, of `all` cells of a grid.
-Eigen::Index cells_each(Eigen::Index all);
-
 /// One value per cell; NaN if the recording does not determine it. Cycles after `discard` are averaged. A
 /// hold is assigned to the nearest displacement. Within the width of a cell a straight line is fitted through
 /// the scans (local linear regression, triangular weights), so the recordings that are compared need not have

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include "core/errors.h"
-#include "ensemble/diagnosis/library_origin.h"
 
 namespace mcdem::inline ensemble {
 namespace {
@@ -13,14 +12,8 @@ namespace {
 /// accurate.
 constexpr double nuisance_step = 1.0;  // sigmas
 
-/// An effect or nuisance that is simulated at two amplitudes.
-struct Probe {
-    std::string name;
-    double amplitudes[2];
-    void (*apply)(Model&, double);
-};
+}  // namespace
 
-/// Amplitudes use the scale of the first packing.
 std::vector<Probe> probes_of(const LibraryPlan& plan) {
     const Model& model = plan.packings.front().model;
     std::vector<Probe> probes;
@@ -35,8 +28,6 @@ std::vector<Probe> probes_of(const LibraryPlan& plan) {
                           nuisance.apply});
     return probes;
 }
-
-}  // namespace
 
 std::vector<Trial> baseline_trials(const LibraryPlan& plan) {
     std::vector<Trial> trials;
@@ -53,17 +44,12 @@ std::vector<Trial> finer_baseline_trials(LibraryPlan plan) {
     return baseline_trials(plan);
 }
 
-namespace {
-
-/// Baseline trials that are repeated with every probe.
 std::vector<std::size_t> paired_trials(const LibraryPlan& plan) {
     std::vector<std::size_t> paired;
     for (std::size_t t = 0; t < plan.packings.size() * static_cast<std::size_t>(plan.replicates); ++t)
         if (static_cast<int>(t) % plan.replicates < plan.pairs) paired.push_back(t);
     return paired;
 }
-
-}  // namespace
 
 std::vector<Trial> library_trials(const LibraryPlan& plan) {
     std::vector<Trial> trials = baseline_trials(plan);
@@ -81,35 +67,6 @@ std::string probe_of_trial(const LibraryPlan& plan, std::size_t trial) {
     const std::size_t baseline = plan.packings.size() * static_cast<std::size_t>(plan.replicates);
     if (trial < baseline) return {};
     return probes_of(plan).at((trial - baseline) / (2 * paired_trials(plan).size())).name;
-}
-
-Library build_library(Device& device, const TrialSettings& common, const LibraryPlan& plan,
-                      const ObservationStore& store, const TrialOptions& options) {
-    Library library;
-    library.grid = common.grid;
-    const std::size_t baseline_count = plan.packings.size() * static_cast<std::size_t>(plan.replicates);
-    for (std::size_t t = 0; t < baseline_count; ++t)
-        library.packing.push_back(static_cast<int>(t) / plan.replicates);
-    const Eigen::MatrixXd observed = observe_trials(device, common, library_trials(plan), store, options);
-    library.baseline = observed.topRows(static_cast<Eigen::Index>(baseline_count));
-    const Eigen::MatrixXd before = library.baseline(paired_trials(plan), Eigen::all);
-    auto next = static_cast<Eigen::Index>(baseline_count);
-    for (const Probe& probe : probes_of(plan)) {
-        Eigen::MatrixXd differences[2];
-        for (Eigen::MatrixXd& difference : differences) {
-            difference = observed.middleRows(next, before.rows()) - before;
-            next += before.rows();
-        }
-        auto& list = find_effect(probe.name) && library.effects.size() < plan.candidates.size()
-                         ? library.effects
-                         : library.nuisances;
-        list.push_back(learn_signature(probe.name, probe.amplitudes[0], probe.amplitudes[1], differences[0],
-                                       differences[1]));
-    }
-    const LibraryPacking& first = plan.packings.front();
-    library.origin = library_origin(common, first.model, first.packing.size());
-    library.provenance = {{"program", common.program}, {"device", device.description()}};
-    return library;
 }
 
 CandidateChoice choose_candidates(const Model& model, const std::vector<std::string>& wanted) {

@@ -1,7 +1,6 @@
-// Computes the signature library of a scene: baseline replicates and, from the same initial packings, every
-// effect and nuisance at two amplitudes.
+// The simulations of a library: baseline replicates and, from the same initial packings, every effect and
+// nuisance at two amplitudes.
 #pragma once
-#include "diagnose/infer/library.h"
 #include "ensemble/diagnosis/observe_trials.h"
 
 namespace mcdem::inline ensemble {
@@ -33,11 +32,20 @@ std::vector<Trial> finer_baseline_trials(LibraryPlan plan);
 /// All trials of a library: those of the baseline, then some of them with every effect and nuisance.
 std::vector<Trial> library_trials(const LibraryPlan& plan);
 
+/// Rows of the baseline trials that are repeated with every probe.
+std::vector<std::size_t> paired_trials(const LibraryPlan& plan);
+
+/// An effect or nuisance that is simulated at two amplitudes.
+struct Probe {
+    std::string name;
+    double amplitudes[2];
+    void (*apply)(Model&, double);
+};
+/// The candidates, then the nuisances. Amplitudes use the scale of the first packing.
+std::vector<Probe> probes_of(const LibraryPlan& plan);
+
 /// Name of the effect or nuisance of a trial of the library; empty for the baseline.
 std::string probe_of_trial(const LibraryPlan& plan, std::size_t trial);
-
-Library build_library(Device& device, const TrialSettings& common, const LibraryPlan& plan,
-                      const ObservationStore& store, const TrialOptions& options);
 
 /// Candidates in `wanted` (empty: all) that this model can have; the others with reasons.
 struct CandidateChoice {

@@ -7,7 +7,7 @@
 
 #include "cl/device.h"
 #include "core/stop.h"
-#include "diagnose/infer/effects.h"
+#include "diagnose/effects.h"
 #include "diagnose/observe/observation.h"
 #include "ensemble/diagnosis/observation_store.h"
 

@@ -5,23 +5,23 @@
 namespace mcdem::inline ensemble {
 namespace {
 
-void add(GapReduction& gap_reduction, const char* metric, const Estimate& before, const Estimate& after) {
+void add(PaperMetrics& metrics, const char* metric, const Estimate& before, const Estimate& after) {
     if (before.available() && after.available())
-        gap_reduction.metrics.push_back({metric, {before.value, after.value}});
+        metrics.values.push_back({metric, {before.value, after.value}});
 }
 
 }  // namespace
 
-void add_paper_metrics(GapReduction& gap_reduction, const Recording& experiment,
-                       const BeforeAfter& simulated) {
+PaperMetrics paper_metrics(const Recording& experiment, const BeforeAfter& simulated) {
+    PaperMetrics metrics;
     const Replicas reference{&experiment};
     const Setting settings[] = {{"before", replicas_of(simulated.before)},
                                 {"after", replicas_of(simulated.after)}};
     const Comparison before = compare(settings[0], reference), after = compare(settings[1], reference);
-    add(gap_reduction, "Rtop", before.Rtop, after.Rtop);
-    add(gap_reduction, "errf", before.errf, after.errf);
-    add(gap_reduction, "errZ", before.errZ, after.errZ);
-    add(gap_reduction, "bhat", before.bhat, after.bhat);
+    add(metrics, "Rtop", before.Rtop, after.Rtop);
+    add(metrics, "errf", before.errf, after.errf);
+    add(metrics, "errZ", before.errZ, after.errZ);
+    add(metrics, "bhat", before.bhat, after.bhat);
 
     const Levels measured = group_levels(reference);
     Eigen::ArrayXd forces[2];
@@ -33,9 +33,10 @@ void add_paper_metrics(GapReduction& gap_reduction, const Recording& experiment,
     const Eigen::ArrayXd experiment_force = mean_without(by_replica(measured, top_force), -1);
     for (std::size_t level = 0; level < measured.size(); ++level) {
         if (measured[level].phase == Phase::load)
-            gap_reduction.top_force.push_back(
+            metrics.top_force.push_back(
                 {measured[level].displacement, experiment_force[level], forces[0][level], forces[1][level]});
     }
+    return metrics;
 }
 
 }  // namespace mcdem::ensemble

@@ -1,9 +1,11 @@
 // Metrics of the paper for an experiment compared with the scene, and with the scene plus the named effect.
 #pragma once
+#include <array>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/recording.h"
-#include "diagnose/decide/diagnosis.h"
 
 namespace mcdem::inline ensemble {
 
@@ -11,8 +13,13 @@ struct BeforeAfter {
     std::vector<Recording> before, after;  ///< replicates, as measured
 };
 
-/// Sets GapReduction::metrics (Rtop, errf [N], errZ, bhat) and GapReduction::top_force.
-void add_paper_metrics(GapReduction& gap_reduction, const Recording& experiment,
-                       const BeforeAfter& simulated);
+struct PaperMetrics {
+    /// Rtop, errf [N], errZ, bhat, as far as known: name; before and after.
+    std::vector<std::pair<std::string, std::array<double, 2>>> values;
+    /// Displacement [m], experiment, before and after [N], during loading.
+    std::vector<std::array<double, 4>> top_force;
+};
+
+PaperMetrics paper_metrics(const Recording& experiment, const BeforeAfter& simulated);
 
 }  // namespace mcdem::ensemble

@@ -1,7 +1,5 @@
 #include "ensemble/diagnosis/plate_motion.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -20,11 +18,11 @@ std::optional<PlateMotion> neglected_motion(const Replica& replica, const Experi
     return changes(replica, motion).empty() ? std::nullopt : std::optional(motion);
 }
 
-std::vector<Refinement> changes(const Replica& replica, const PlateMotion& motion) {
+std::vector<SettingChange> changes(const Replica& replica, const PlateMotion& motion) {
     const Protocol& protocol = replica.protocol;
-    std::vector<Refinement> list;
+    std::vector<SettingChange> list;
     const auto add = [&](const char* key, const char* unit, double from, double to) {
-        if (from != to) list.push_back({"", key, unit, from, to, true});
+        if (from != to) list.push_back({key, unit, from, to});
     };
     add("protocol.pause", "s", protocol.pause, motion.pause);
     add("protocol.hold", "s", protocol.hold, motion.hold);
@@ -39,13 +37,6 @@ void apply(Replica& replica, const PlateMotion& motion) {
     replica.protocol.hold = motion.hold;
     replica.plate.speed = motion.speed;
     replica.protocol.rate_tolerance = 0;
-}
-
-NextStep simulate_motion(const Replica& replica, const PlateMotion& motion) {
-    std::string settings = motion.pause > 0 ? " --set protocol.stop_at_scans=true" : "";
-    for (const Refinement& change : changes(replica, motion))
-        settings += fmt::format(" --set {}={:.3g}", change.key, change.to);
-    return {"simulate the motion of the experiment's plate:" + settings, {}};
 }
 
 }  // namespace mcdem::ensemble

@@ -5,11 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/decide/diagnosis.h"
 #include "experiment/experiment.h"
 #include "scene/scene.h"
 
 namespace mcdem::inline ensemble {
+
+/// Of a key of the scene.
+struct SettingChange {
+    std::string key, unit;
+    double from = 0, to = 0;
+};
 
 struct PlateMotion {
     double speed;      ///< [m/s]; constant if the plate does not pause
@@ -22,10 +27,7 @@ struct PlateMotion {
 /// a factor of `max_slowdown`. Standing times are no longer than the scene's grains have to come to rest.
 std::optional<PlateMotion> neglected_motion(const Replica& replica, const Experiment& experiment,
                                             double max_slowdown);
-/// The changes of the scene, as keys and values.
-std::vector<Refinement> changes(const Replica& replica, const PlateMotion& motion);
+std::vector<SettingChange> changes(const Replica& replica, const PlateMotion& motion);
 void apply(Replica& replica, const PlateMotion& motion);
-/// The settings to make, as advice.
-NextStep simulate_motion(const Replica& replica, const PlateMotion& motion);
 
 }  // namespace mcdem::ensemble

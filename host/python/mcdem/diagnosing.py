@@ -1,12 +1,23 @@
-"""mcdem.diagnose: the compiled diagnosis, and what Python writes of it."""
-import importlib
-from collections.abc import Sequence
-from typing import Any
+"""mcdem.diagnose: a diagnosis for users of Python."""
+import os
+import pathlib
+import sys
+import warnings
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from .command import folders
+from .errors import InputError
+from .look import Path
+
+if TYPE_CHECKING:
+    from ._engine import Scene
+    from .diagnosis.diagnose import Options
 
 
-def diagnose(scene: Any, experiment: Any, folder: Any, *, candidates: Sequence[str] = (), replicates: int = 32, pairs: int = 8,
-             confirmations: int = 8, refine: float = 4.0, seed: int = 1, library: Any = None, device: str = "", page: bool = True,
-             progress: Any = None) -> dict[str, Any]:
+def diagnose(scene: "Scene", experiment: Path | Sequence[Path], folder: Path, *, candidates: Sequence[str] = (), replicates: int = 32,
+             pairs: int = 8, confirmations: int = 8, refine: float = 4.0, seed: int = 1, library: Path | None = None, device: str = "",
+             page: bool = True, progress: Callable[[str, float], object] | None = None) -> dict[str, Any]:
     """Where a scene and an experiment differ, and which effect is consistent with the difference: the contents of diagnosis.json.
 
     `experiment`: a folder, or a list of those of several packings, which are diagnosed together. `refine`: the largest factor by
@@ -15,11 +26,55 @@ def diagnose(scene: Any, experiment: Any, folder: Any, *, candidates: Sequence[s
     `progress(stage, fraction)` is called repeatedly. host/diagnose/DIAGNOSIS_OUTPUT.md explains the keys. Raises ValueError,
     RuntimeError.
     """
-    engine = importlib.import_module("._engine", __package__)
+    from .diagnosis.diagnose import Options
+    from .outputs import output_folder, remove_temporaries
     from .report.present_diagnosis import completed, write_page
-    engine.diagnose(scene, experiment, folder, candidates=list(candidates), replicates=replicates, pairs=pairs,
-                    confirmations=confirmations, refine=refine, seed=seed, library=library, device=device, progress=progress)
+    options = Options(candidates=list(candidates), replicates=replicates, pairs=pairs, confirmations=confirmations, refine=refine,
+                      seed=seed, library=library)
+    _check(options)
+    with output_folder(folder) as out:
+        remove_temporaries(out / "simulations")
+        _write(scene, folders(experiment), out, options, device, progress)
     diagnosis, document = completed(folder)
     if page:
         write_page(diagnosis, folder)
     return document
+
+
+def _check(options: "Options") -> None:
+    problems = [f"{name}: must be {least} or more, got {value}" for name, value, least in
+                (("replicates", options.replicates, 8), ("pairs", options.pairs, 2), ("confirmations", options.confirmations, 0))
+                if value < least]
+    if not 1 <= options.refine <= 64:
+        problems.append(f"refine: must be between 1 and 64, got {options.refine:g}")
+    if problems:
+        raise InputError(problems)
+
+
+def _write(scene: "Scene", experiments: list[str], out: pathlib.Path, options: "Options", device: str,
+           progress: Callable[[str, float], object] | None) -> None:
+    """Writes diagnosis.json."""
+    from .diagnosis.diagnose import Listener, diagnose, make_simulations
+    from .diagnosis.diagnosis_json import diagnosis_json
+    from .outputs import DIAGNOSIS, replace_own
+
+    class Caller(Listener):
+        def progress(self, stage: str, fraction: float) -> None:
+            if progress:
+                progress(stage, fraction)
+
+        def note(self, text: str) -> None:
+            warnings.warn(text, RuntimeWarning, stacklevel=_levels_up_to_the_user())
+
+    caller = Caller()
+    simulations = make_simulations(scene, experiments, os.path.join(out, "simulations"), options, device, "experiment", caller)
+    diagnosis = diagnose(scene, simulations, options, caller)
+    replace_own(out / "diagnosis.json", DIAGNOSIS, diagnosis_json(diagnosis).encode())
+
+
+def _levels_up_to_the_user() -> int:
+    """From the caller of this function: for a warning that names the user's line."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back and frame.f_globals.get("__name__", "").startswith(f"{__package__}."):
+        level, frame = level + 1, frame.f_back
+    return level

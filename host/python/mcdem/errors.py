@@ -14,3 +14,7 @@ class InputError(ValueError):
 
 class RunError(RuntimeError):
     """The work failed although the input was valid (exit code 1)."""
+
+
+class DeviceError(RunError):
+    """OpenCL or the device failed."""

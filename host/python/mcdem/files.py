@@ -1,5 +1,6 @@
 """Atomic file writes."""
 import contextlib
+import errno
 import fcntl
 import os
 import pathlib
@@ -11,9 +12,10 @@ from collections.abc import Iterator
 from typing import BinaryIO
 
 from .errors import InputError, RunError
-from .look import Path
+from .look import Path, is_there
 
 INTACT = "; the file may be intact: remove the cause and try again"
+NO_LINKS = errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP  # errors of file systems without links
 unfinished: set[str | pathlib.Path] = set()  # paths of temporary files and folders
 
 
@@ -72,6 +74,35 @@ def write_whole(file: Path, content: bytes) -> None:
     """Writes bytes by new_file."""
     with new_file(file) as out:
         out.write(content)
+
+
+def create_whole(file: Path, content: bytes) -> bool:
+    """Writes the complete file or nothing. Returns False if the file exists; it is not replaced. Raises RunError."""
+    try:
+        with new_file(file) as out:
+            out.write(content)
+            out.flush()
+            os.fsync(out.fileno())
+            _expect_new(out.name, file)
+    except FileExistsError:
+        return False
+    except OSError as error:
+        raise RunError(f"{file}: cannot be written: {error.strerror or error}") from error
+    return True
+
+
+def _expect_new(temporary: str, file: Path) -> None:
+    """Links the file to the temporary one, which then takes its place. Raises FileExistsError."""
+    try:
+        os.link(temporary, file)
+    except OSError as error:
+        if isinstance(error, FileExistsError) and os.stat(temporary).st_nlink == 2:
+            return  # a network file system made the link and lost the reply
+        # File systems without links: two programs at the same moment may both create the file.
+        if error.errno not in NO_LINKS:
+            raise
+        if is_there(file):
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), temporary) from error
 
 
 def expect_regular(path: str) -> None:

@@ -52,7 +52,7 @@ def expect_replaceable(file: Path, kind: Kind) -> None:
 def replace_own(file: Path, kind: Kind, content: bytes) -> None:
     """Writes the file atomically. Raises InputError as expect_replaceable, and RunError if it cannot be written."""
     expect_replaceable(file, kind)
-    remove_temporaries(pathlib.Path(file).parent, pathlib.Path(file).name)
+    remove_temporaries_of(file)
     try:
         write_whole(file, content)
     except OSError as error:
@@ -66,6 +66,11 @@ def remove_temporaries(folder: Path, name: str | None = None) -> None:
             found = TEMPORARY.fullmatch(entry.name)
             if found and name in (None, found[1]):
                 _remove_if_abandoned(entry.path)
+
+
+def remove_temporaries_of(file: Path) -> None:
+    """Likewise, of one file."""
+    remove_temporaries(pathlib.Path(file).parent, pathlib.Path(file).name)
 
 
 def _remove_if_abandoned(path: str) -> None:
@@ -97,9 +102,14 @@ def make_folder(folder: Path) -> None:
         raise RunError(f"{folder}: cannot be written to: Permission denied")
 
 
+def make_folder_of(file: Path) -> None:
+    make_folder(pathlib.Path(file).parent)
+
+
 @contextlib.contextmanager
-def output_folder(folder: Path) -> Iterator[pathlib.Path]:
-    """Creates a folder if necessary and locks it against other programs. Removes temporary files of killed programs in it.
+def output_folder(folder: Path, shared: bool = False) -> Iterator[pathlib.Path]:
+    """Creates a folder if necessary and locks it against other programs, or shared with those that share it. Removes temporary files of
+    killed programs in it, unless it is shared.
 
     Raises InputError for a file, for the folder of an experiment, and if another program uses the folder; RunError if it cannot be
     created or written.
@@ -113,7 +123,7 @@ def output_folder(folder: Path) -> Iterator[pathlib.Path]:
     except OSError as error:
         raise RunError(f"{folder}: cannot be opened: {error.strerror}") from error
     try:
-        _lock_alone(descriptor, folder)
+        _lock(descriptor, folder, shared)
         _expect_no_experiment(folder)  # may have been created by another program in the meantime
         yield pathlib.Path(folder)
     finally:
@@ -125,18 +135,25 @@ def _expect_no_experiment(folder: Path) -> None:
         raise InputError(f"{folder}: is the folder of an experiment, into which nothing else is written: give another folder (--out)")
 
 
-def _lock_alone(descriptor: int, folder: Path) -> None:
+def _lock(descriptor: int, folder: Path, shared: bool) -> None:
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        remove_temporaries(folder)
+        fcntl.flock(descriptor, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+        if not shared:
+            remove_temporaries(folder)
         return
     except BlockingIOError:
         pass
     except OSError:  # some network file systems have no locks
         return
+    raise InputError(f"{folder}: {_obstacle(descriptor, shared)}, or give another folder")
+
+
+def _obstacle(descriptor: int, shared: bool) -> str:
+    """Why the lock is not available, and a remedy."""
+    if shared:
+        return "another program is writing there alone, which cannot be shared: wait for it"
     try:
         fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        users = "other programs share work there: wait for them"
+        return "other programs share work there: wait for them"
     except OSError:
-        users = "another program is writing there: wait for it"
-    raise InputError(f"{folder}: {users}, or give another folder")
+        return "another program is writing there: wait for it"

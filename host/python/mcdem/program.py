@@ -14,7 +14,7 @@ import traceback
 import warnings
 from collections.abc import Callable
 from types import FrameType
-from typing import NoReturn, cast
+from typing import NoReturn, TextIO, cast
 
 from .errors import INTERRUPTED, InputError, RunError
 from .files import remove_unfinished
@@ -37,9 +37,8 @@ class Shown(io.TextIOWrapper):
         return len(text)
 
 
-def shown(stream: io.TextIOWrapper) -> Shown:
-    lines = stream.line_buffering
-    return Shown(stream.detach(), encoding="utf-8", errors="surrogateescape", line_buffering=lines)
+def shown(stream: TextIO, by_line: bool) -> Shown:
+    return Shown(cast(io.TextIOWrapper, stream).detach(), encoding="utf-8", errors="surrogateescape", line_buffering=by_line)
 
 
 def is_debugged() -> bool:
@@ -88,6 +87,9 @@ def message_of(error: BaseException) -> str:
         name = error.name.split(".")[0]
         return (f"the Python package {name} is not there for {sys.executable}: install {PACKAGES.get(name, f'python3-{name}')}, "
                 "or name a Python 3 that has it by MCDEM_PYTHON")
+    if isinstance(error, ImportError) and "_engine" in str(error):
+        return ("the compiled module of mcdem is not there: in the sources `scripts/setup --python` builds it; otherwise install "
+                f"python3-mcdem, or mcdem by pip ({error})")
     if isinstance(error, RunError):
         return str(error)
     if isinstance(error, MemoryError):
@@ -144,7 +146,7 @@ def flush(exit_code: int) -> int:
 
 def main() -> int:
     handle_signals(end_at_once)
-    sys.stdout, sys.stderr = (shown(cast(io.TextIOWrapper, stream)) for stream in (sys.stdout, sys.stderr))
+    sys.stdout, sys.stderr = shown(sys.stdout, by_line=sys.stdout.isatty()), shown(sys.stderr, by_line=True)
     if not is_debugged():  # what libraries say to programmers
         warnings.simplefilter("ignore")
         sys.unraisablehook = lambda _: None

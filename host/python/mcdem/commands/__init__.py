@@ -1,4 +1,4 @@
-"""The commands: `python3 -m mcdem WORD ..` runs the module of that name here.
+"""The commands: `python3 -m mcdem WORD ..` runs the module of that name here, `challenge run ..` that of challenge_run.
 
 A module has `add_arguments(parser)` and `run(options) -> exit code`; as EPILOG it may have the end of its help.
 """
@@ -9,5 +9,9 @@ COMMANDS = {
     "compare": "Compare runs with an experiment or another run: the paper's table",
     "figures": "Draw the figures of runs (top force, force distribution, Z, scaling law; others for programmes) or of a diagnosis",
     "report": "Write an HTML page of runs and diagnoses: charts, packings in 3D, tables",
+    "diagnose": "Find where a simulation and an experiment differ, and which effect is consistent with the difference",
+    "challenge make": "Simulate experiments with hidden effects, and write the truth to a separate file",
+    "challenge run": "Diagnose every experiment of a challenge",
+    "challenge score": "Compare the diagnoses with the truth",
     "export": "Write grains and contacts for ParaView or OVITO",
 }

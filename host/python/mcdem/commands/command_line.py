@@ -3,9 +3,10 @@ import argparse
 import importlib
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
+from ..command import ask
 from ..program import say
 from . import COMMANDS
 
@@ -31,6 +32,7 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         message = re.sub(r"^argument (\S+?)(/\S+)?: ", r"\1: ", message)
         message = re.sub(r"^the following arguments are required: ([^,]*).*", r"\1 is required", message)
+        message = message.replace(": not allowed with argument ", " excludes ")
         message = re.sub(r"^unrecognized arguments: ", "The following argument was not expected: ", message)
         say(message)
         say(f"`{self.prog} --help` tells more")
@@ -56,6 +58,35 @@ def whole_at_least_zero(text: str) -> int:
     return int(value)
 
 
+def whole_in(low: int, high: int) -> Callable[[str], int]:
+    """Converts a whole number in this range."""
+    def convert(text: str) -> int:
+        if not (re.fullmatch(r"\+?\d{1,20}", text, re.ASCII) and low <= int(text) <= high):
+            raise argparse.ArgumentTypeError(f"must be a whole number from {low} to {high}, got {text}")
+        return int(text)
+
+    return convert
+
+
+def number_in(low: float, high: float) -> Callable[[str], float]:
+    """Converts a number in this range."""
+    def convert(text: str) -> float:
+        try:
+            value = at_least_zero(text)
+        except argparse.ArgumentTypeError:
+            value = math.nan
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"must be a number from {low} to {high}, got {text}")
+        return value
+
+    return convert
+
+
+def names(text: str) -> list[str]:
+    """A,B,.."""
+    return text.split(",")
+
+
 def output_path(text: str) -> str:
     """Refuses an empty path, which would mean the current folder."""
     if not text:
@@ -76,22 +107,34 @@ def run_command(words: Sequence[str]) -> int:
         print(general_help(), end="")
         return 0
     if word == "complete" and len(words) > 2:
-        complete(words[1], words[2:])
+        command, arguments = command_of(words[1:])
+        complete(command, arguments)
         return 0
-    if word not in COMMANDS:
-        kind = "option" if word.startswith("-") else "command"
-        say(f"there is no {kind} {word}" if word else "A subcommand is required")
+    command, arguments = command_of(words)
+    if command not in COMMANDS:
+        kind = "option" if command.startswith("-") else "command"
+        say(f"there is no {kind} {command}" if command else "A subcommand is required")
         say("`mcdem --help` tells more")
         return BAD_INPUT
-    command = importlib.import_module(f".{word}", __package__)
-    return int(command.run(parser_of(word, command).parse_intermixed_args(words[1:])))
+    module = module_of(command)
+    return int(module.run(parser_of(command, module).parse_intermixed_args(arguments)))
 
 
-def parser_of(word: str, command: Any) -> Parser:
-    """`command`: its module."""
-    parser = Parser(prog=f"mcdem {word}", description=COMMANDS[word], epilog=getattr(command, "EPILOG", None), formatter_class=Help,
+def command_of(words: Sequence[str]) -> tuple[str, Sequence[str]]:
+    """The command, of one or two words, and its arguments."""
+    both = " ".join(words[:2])
+    is_group = any(command.startswith(f"{words[0]} ") for command in COMMANDS) if words else False
+    return (both, words[2:]) if is_group else ("".join(words[:1]), words[1:])
+
+
+def module_of(command: str) -> Any:
+    return importlib.import_module("." + command.replace(" ", "_"), __package__)
+
+
+def parser_of(command: str, module: Any) -> Parser:
+    parser = Parser(prog=f"mcdem {command}", description=COMMANDS[command], epilog=getattr(module, "EPILOG", None), formatter_class=Help,
                     allow_abbrev=False)
-    command.add_arguments(parser)
+    module.add_arguments(parser)
     return parser
 
 
@@ -101,12 +144,14 @@ def complete(command: str, words: Sequence[str]) -> None:
     A line is a candidate, with its description after a tab, or `:files` or `:folders` for those that the shell finds.
     """
     *before, word = words
-    actions = parser_of(command, importlib.import_module(f".{command}", __package__))._actions
+    actions = parser_of(command, module_of(command))._actions
     options = {name: action for action in actions for name in action.option_strings if action.help is not argparse.SUPPRESS}
     asked = options.get(before[-1]) if before else None
     if asked and asked.nargs != 0:
         if asked.metavar in ("DIR", "FILE"):
             print(":folders" if asked.metavar == "DIR" else ":files")
+        if asked.metavar == "KEY=VALUE":
+            print(ask(["complete", "--", "run", "--set", word]), end="")  # the program knows the keys of a scene
     elif word.startswith("-"):
         for name, action in options.items():
             if name.startswith(word):

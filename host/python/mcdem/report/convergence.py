@@ -7,7 +7,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..files import read_input
-from .checked_json import Invalid, object_of, parsed
+from ..checked_json import Invalid, object_of, parsed
 from .diagnosis_words import words_of
 from .effect_names import OBSERVABLES
 from .labels import style_number

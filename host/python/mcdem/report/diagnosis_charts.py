@@ -3,8 +3,8 @@ from typing import Any
 
 import plotly.graph_objects as go
 
+from ..diagnosis.diagnosis_types import Diagnosis
 from .charts import from_zero, plot_text, titled
-from .diagnosis import Diagnosis
 from .diagnosis_values import Values, diagnosis_figure_values
 from .diagnosis_words import percent
 from .page import Chart

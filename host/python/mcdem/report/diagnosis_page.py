@@ -3,7 +3,7 @@ import pathlib
 from collections.abc import Iterable, Sequence
 from math import isfinite
 
-from .diagnosis import Diagnosis, WhereEntry
+from ..diagnosis.diagnosis_types import Diagnosis, WhereEntry
 from .diagnosis_charts import diagnosis_charts
 from .diagnosis_text import how_far_line, verdict_lines
 from .diagnosis_where import strongest_first

@@ -1,5 +1,5 @@
 """A diagnosis in a few lines."""
-from .diagnosis import Diagnosis, Explanation
+from ..diagnosis.diagnosis_types import Diagnosis, Explanation
 from .diagnosis_where import where_line
 from .diagnosis_words import check_words, listed, listed_names, missing_words, next_words, p_words, percent
 from .labels import one_line, shortened

@@ -3,7 +3,7 @@ from dataclasses import dataclass
 from math import ceil, isfinite
 from typing import Any
 
-from .diagnosis import Cause, Diagnosis, GapReduction, WhereCell
+from ..diagnosis.diagnosis_types import Cause, Diagnosis, GapReduction, WhereCell
 from .diagnosis_where import SAME_DISPLACEMENT_MM, stands_out
 from .diagnosis_words import amount_with_error, percent, words_of
 from .verdict import VerdictWords, verdict_words

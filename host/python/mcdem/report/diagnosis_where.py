@@ -1,7 +1,7 @@
 """Where simulation and experiment differ, in words, and which values stand out."""
 from math import inf, isfinite
 
-from .diagnosis import Diagnosis, WhereCell, WhereEntry
+from ..diagnosis.diagnosis_types import Diagnosis, WhereCell, WhereEntry
 from .diagnosis_words import where_words, words_of
 
 MOST_PLACES = 2

@@ -2,7 +2,7 @@
 import math
 from collections.abc import Callable, Iterable, Sequence
 
-from .diagnosis import Cause, MissingBins, NextStep, NuisanceFit, Pair, Refinement, WhereEntry
+from ..diagnosis.diagnosis_types import Cause, MissingBins, NextStep, NuisanceFit, Pair, Refinement, WhereEntry
 from .effect_names import EFFECTS
 from .labels import NO_NUMBER, one_line
 

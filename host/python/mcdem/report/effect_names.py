@@ -1,4 +1,4 @@
-"""What effects and observables of a diagnosis are called and mean: host/diagnose/infer/effects.cpp, observe/scan_observables.cpp."""
+"""What effects and observables of a diagnosis are called and mean: host/diagnose/effects.cpp, observe/scan_observables.cpp."""
 from typing import NamedTuple
 
 

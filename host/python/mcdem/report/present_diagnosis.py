@@ -4,11 +4,12 @@ import os
 import sys
 from typing import Any
 
+from ..diagnosis.diagnosis_types import Diagnosis
 from ..errors import InputError
 from ..files import read_whole
 from ..outputs import DIAGNOSIS, replace_own
 from ..program import message_of, say
-from .diagnosis import Diagnosis, diagnosis_of
+from .diagnosis import diagnosis_of
 from .diagnosis_text import diagnosis_text, verdict_sentence
 from .diagnosis_values import diagnosis_figure_values
 from .draw import draw_figures, draw_if_possible

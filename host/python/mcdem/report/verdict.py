@@ -2,7 +2,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from .diagnosis import Cause, Diagnosis, NuisanceFit
+from ..diagnosis.diagnosis_types import Cause, Diagnosis, NuisanceFit
 from .diagnosis_words import (amount, cause_words, check_words, listed, listed_names, p_words, percent, refinement_words, sigma_words,
                               suspect_words, words_of)
 from .labels import shortened

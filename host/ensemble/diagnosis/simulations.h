@@ -1,0 +1,108 @@
+// The simulations that a diagnosis asks for, as observations: what Python gets (host/python/mcdem/diagnosis).
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ensemble/diagnosis/diagnosis_plan.h"
+#include "ensemble/diagnosis/other_protocols.h"
+#include "ensemble/diagnosis/paper_metrics.h"
+#include "ensemble/diagnosis/plate_motion.h"
+
+namespace mcdem::inline ensemble {
+
+/// Amplitudes by name, of effects and of nuisances: what a fitted simulation has that the scene has not.
+using Amplitudes = std::vector<std::pair<std::string, double>>;
+
+/// An effect or nuisance of the library and its two amplitudes.
+struct ProbeAmplitudes {
+    std::string name;
+    double first = 0, second = 0;
+};
+
+struct SimulationProgress {
+    std::function<void(double fraction)> on_progress = [](double) {};
+    StopWanted stop_wanted = never_stop;
+};
+
+/// Observations are matrices: a row for each simulation, NaN if it failed; a column for each cell of the
+/// grid. Simulations are kept in a folder and never repeated.
+class Simulations {
+public:
+    /// `device`: a choice (cl/device.h); it is opened when something must be simulated.
+    Simulations(DiagnosisPlan plan, const std::filesystem::path& folder, std::string device);
+
+    const DiagnosisPlan& plan() const { return plan_; }
+    int packings() const { return static_cast<int>(plan_.library.packings.size()); }
+    /// Description of the device.
+    std::string device() { return opened().description(); }
+    std::string device_name() { return opened().info().name; }
+    /// What a library depends on (library_origin.h).
+    std::map<std::string, std::string> origin() const;
+    /// Compares at the displacements of a library from now on.
+    void compare_at(Grid grid) { plan_.common.grid = std::move(grid); }
+    /// Row: experiment.
+    Eigen::MatrixXd observed() const;
+
+    /// The trials of a library: the baseline, packing after packing; then for each probe and each of its two
+    /// amplitudes the paired rows of the baseline again.
+    Eigen::MatrixXd library(const SimulationProgress& progress);
+    std::vector<std::size_t> paired_rows() const;
+    std::vector<ProbeAmplitudes> probes() const;
+
+    Eigen::MatrixXd baseline(const SimulationProgress& progress);
+    /// With half the error of positions.
+    Eigen::MatrixXd finer_baseline(const SimulationProgress& progress);
+    /// `runs` of every packing with each of the fits, with the protocol of other_protocols() if given.
+    Eigen::MatrixXd fitted(const std::vector<Amplitudes>& fits, int runs, std::optional<std::size_t> protocol,
+                           const SimulationProgress& progress);
+    /// Why simulations failed until now, by the probe (library) or "" (unchanged scene).
+    const std::map<std::string, std::string>& causes_of_failure() const { return causes_; }
+
+    /// Stores recordings of the first `runs` of the baseline, or of a fit.
+    void record(const Amplitudes& fit, int runs, const SimulationProgress& progress);
+    /// The first packing's experiment compared with recorded runs of the scene and of a fit.
+    PaperMetrics metrics(const Amplitudes& fit, int before, int after);
+
+    /// The setting that a numerical effect lowers, of several together the one to recommend; its values are
+    /// the present one twice.
+    SettingChange setting(const std::string& effect);
+    /// Multiplies it, and those that go with it.
+    void refine(const std::string& effect, double factor);
+    /// The plate's motion that the experiment states and the scene has not (plate_motion.h).
+    std::vector<SettingChange> neglected_motion(double max_slowdown) const;
+    void follow_motion(double max_slowdown);
+    /// What other protocols would tell effects apart, by runs of `fitted`.
+    std::vector<std::string> other_protocols(bool slower);
+    /// "contact.gamma = 1.16" for every key of the scene that these amplitudes change.
+    std::vector<std::string> changed_keys(const Amplitudes& amplitudes) const;
+
+    /// Parts of the library's simulations, for several processes; those of `device` that are missing.
+    std::size_t count_parts();
+    std::vector<std::size_t> missing_parts(const std::string& device);
+    void compute_part(std::size_t part, const SimulationProgress& progress);
+
+private:
+    using Trials = std::vector<Trial>;
+    Device& opened();
+    const Model& model() const { return plan_.library.packings.front().model; }
+    void apply(Model& model, const Amplitudes& amplitudes) const;
+    Trials trials_of(const Amplitudes& fit, int runs) const;
+    Trials recorded_trials(const Amplitudes& fit, int runs) const;
+    const std::vector<Trials>& parts();
+    Eigen::MatrixXd observe_probes(const Trials& trials, const SimulationProgress& progress);
+
+    DiagnosisPlan plan_;
+    ObservationStore store_;
+    std::string choice_;
+    std::unique_ptr<Device> device_;
+    std::optional<std::vector<Trials>> parts_;
+    std::vector<OtherProtocol> protocols_;
+    std::map<std::string, std::string> causes_;
+};
+
+}  // namespace mcdem::ensemble

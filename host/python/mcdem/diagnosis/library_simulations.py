@@ -1,0 +1,55 @@
+"""The signatures of a scene from its simulations, and the library that a diagnosis uses."""
+from collections.abc import Callable
+
+from .. import _engine as engine
+from ..look import Path, is_there
+from ..outputs import remove_temporaries_of
+from ..results.names import Phase
+from .effects import find_effect
+from .library import Library, read_library
+from .library_origin import expect_library_of, expect_origin
+from .observables import Grid, HoldScans
+from .signature import learn_signature
+
+Progress = Callable[[float], object]
+
+
+def grid_of(simulations: engine.Simulations) -> Grid:
+    """The displacements at which they are compared with the experiment."""
+    values = simulations.grid
+    values["holds"] = [HoldScans(**(hold | {"phase": Phase(hold["phase"])})) for hold in values["holds"]]
+    return Grid(**values)
+
+
+def compare_at(simulations: engine.Simulations, grid: Grid) -> None:
+    holds = [{**vars(hold), "phase": int(hold.phase)} for hold in grid.holds]
+    simulations.grid = {**vars(grid), "displacement": [*map(float, grid.displacement)], "force": [*map(float, grid.force)], "holds": holds}
+
+
+def build_library(simulations: engine.Simulations, progress: Progress | None = None) -> Library:
+    """Simulates the unchanged scene, and from the same packings every effect and nuisance at two amplitudes. Raises InputError."""
+    facts = simulations.facts()
+    rows = simulations.library(progress)
+    paired, count = facts["paired_rows"], facts["packings"] * facts["replicates"]
+    baseline = rows[:count]
+    library = Library(grid=grid_of(simulations), baseline=baseline, packing=[row // facts["replicates"] for row in range(count)],
+                      origin=simulations.origin, provenance={"program": engine.__version__, "device": simulations.device})
+    differences = (rows[count:].reshape(-1, 2, len(paired), rows.shape[1]) - baseline[paired])
+    for (name, first, second), (at_first, at_second) in zip(facts["probes"], differences, strict=True):
+        signatures = library.effects if find_effect(name) else library.nuisances
+        signatures.append(learn_signature(name, first, second, at_first, at_second))
+    return library
+
+
+def fitting_library(simulations: engine.Simulations, file: Path | None) -> Library | None:
+    """The library in `file` if there is one. Raises InputError if it does not fit the simulations."""
+    if file is None:
+        return None
+    remove_temporaries_of(file)  # left by an interrupted diagnosis
+    if not is_there(file):
+        return None
+    library, facts = read_library(file), simulations.facts()
+    expect_origin(library, simulations.origin, file)
+    candidates, nuisances = ([name for name, *_ in facts[kind]] for kind in ("candidates", "nuisances"))
+    expect_library_of(library, grid_of(simulations), candidates, nuisances, file)
+    return library

@@ -1,0 +1,49 @@
+"""Rearrangements of grains that occur in no replicate. They change all observables at one displacement, and few elsewhere; an effect changes
+observables in the whole stroke."""
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .evidence import GapData
+from .gap_space import CellChoice, GapSpace
+from .gap_tests import GapStatistics, NullDistribution, gap_statistics
+from .observables import MIN_CELLS, cells_each, observables
+
+OF_HOLDS = "relaxation", "creep"  # observables with one place only
+
+
+def without_place(cells: CellChoice, place: int, all_cells: int) -> CellChoice:
+    """The cells without all observables at one displacement and phase (`place`, the index of a cell in its observable), except relaxation and
+    creep in a hold, which have one place only."""
+    observable, of_cell = np.divmod(cells, cells_each(all_cells))
+    of_hold = [k for k, one in enumerate(observables()) if one.name in OF_HOLDS]
+    rest: CellChoice = cells[(of_cell != place) | np.isin(observable, of_hold)]
+    return rest
+
+
+@dataclass(frozen=True, eq=False)
+class PlaceLeftOut:
+    """Tests without one place."""
+
+    place: int
+    cells: CellChoice
+    null: NullDistribution
+
+
+def places_left_out(data: GapData, mean_of: int, seed: int) -> list[PlaceLeftOut]:
+    """One for each place, unless too few other cells remain."""
+    choices = [without_place(data.cells, place, len(data.gap)) for place in range(cells_each(len(data.gap)))]
+    return [PlaceLeftOut(place, cells, NullDistribution(replace(data, cells=cells), mean_of, seed))
+            for place, cells in enumerate(choices) if MIN_CELLS <= len(cells) < len(data.cells)]
+
+
+def p_of_gap(null: NullDistribution, statistics: GapStatistics) -> float:
+    """p of a gap, from the omnibus and the directed test (Bonferroni correction)."""
+    return min(1.0, 2 * min(null.p_value("omnibus", statistics.omnibus), null.p_value("directed", statistics.directed)))
+
+
+def p_without_one_place(places: Sequence[PlaceLeftOut], data: GapData, mean_of: int) -> float:
+    """The largest p of the gap without one of the places."""
+    spaces = [GapSpace(data.noise, mean_of, one.cells, data.free) for one in places]
+    return max((p_of_gap(one.null, gap_statistics(space, data, data.gap)) for one, space in zip(places, spaces)), default=0.0)

@@ -1,0 +1,94 @@
+"""Effects that no library has change the simulated experiment as they say. outside_test.py"""
+import csv
+import gzip
+import pathlib
+import tempfile
+import unittest
+
+import numpy as np
+
+from mcdem._engine import CaseSimulator, outside_effects, scene_of_options
+
+SCENE = """name = "small"
+[box]
+size_x = 0.062
+size_y = 0.062
+[contact]
+model = "independent"
+[packing]
+count = 27
+packing_fraction = 0.59
+[plate]
+start = 0.0625
+end = 0.0555
+speed = 0.3
+[protocol]
+stop_at_scans = false
+scans_per_stroke = 3
+relax_time = 0.05
+"""
+AMPLITUDES = {"vertical_stretch": 0.01, "plate_backlash": 1e-3, "soft_walls": 2.0, "box_error": 0.02}
+
+
+def table(folder, name):
+    """Columns by name; texts where they are no numbers."""
+    with gzip.open(folder / f"{name}.csv.gz", "rt", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return {column: np.array([row[column] for row in rows]) for column in rows[0]}
+
+
+def numbers(folder, name, column):
+    return table(folder, name)[column].astype(float)
+
+
+class OutsideEffects(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        (cls.folder / "small.toml").write_text(SCENE)
+        scene, _ = scene_of_options(str(cls.folder / "small.toml"), [])
+        simulator = CaseSimulator(scene, (0, 0, 0, 0), "")  # measured without errors
+        simulator.make_packings([1])
+        effects = {"nothing": [], **{name: [(name, amplitude)] for name, amplitude in AMPLITUDES.items()}}
+        failures = simulator.simulate([(name, hidden, [], 0, 5) for name, hidden in effects.items()], False)
+        assert not any(failures), failures
+        for k, name in enumerate(effects):
+            simulator.write(k, cls.folder / name)
+
+    def values(self, effect, name, column):
+        """Those of the experiment without an effect, and of the one with it."""
+        return (numbers(self.folder / case, name, column) for case in ("nothing", effect))
+
+    def test_are_all_tried_here(self):
+        self.assertEqual(set(AMPLITUDES), {name for name, *_ in outside_effects()})
+
+    def test_vertical_stretch_moves_grains_and_contacts_but_not_the_plate(self):
+        for name in ("grains", "contacts"):
+            before, after = self.values("vertical_stretch", name, "z_m")
+            np.testing.assert_allclose(after, 1.01 * before, rtol=1e-6, atol=1e-9)
+            np.testing.assert_array_equal(*self.values("vertical_stretch", name, "x_m"))
+        np.testing.assert_array_equal(*self.values("vertical_stretch", "plate", "plate_z_m"))
+
+    def test_plate_backlash_moves_the_plate_on_its_way_up(self):
+        before, after = self.values("plate_backlash", "plate", "plate_z_m")
+        is_up = table(self.folder / "nothing", "plate")["phase"] == "unload"
+        self.assertEqual(set(is_up), {True, False})
+        np.testing.assert_allclose(after - before, np.where(is_up, 1e-3, 0), atol=1e-9)
+        np.testing.assert_array_equal(*self.values("plate_backlash", "grains", "z_m"))
+
+    def test_soft_walls_lower_the_force_and_a_narrow_box_raises_it(self):
+        is_deepest = np.argmin(numbers(self.folder / "nothing", "plate", "plate_z_m"))
+        for effect, sign in {"soft_walls": -1, "box_error": 1}.items():
+            before, after = (force[is_deepest] for force in self.values(effect, "plate", "top_force_N"))
+            self.assertGreater(sign * (after / before - 1), 0.02, effect)
+
+    def test_the_stated_box_stays(self):
+        for effect in AMPLITUDES:
+            settings = (self.folder / effect / "experiment.toml").read_text().replace(effect, "nothing")
+            self.assertEqual(settings, (self.folder / "nothing/experiment.toml").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,91 @@
+"""A planted difference is located at its cells; replicates without a difference have none. location_test.py"""
+import unittest
+
+import numpy as np
+from synthetic_evidence import GRID, SyntheticWorld
+
+from mcdem.diagnosis.decision import Limits
+from mcdem.diagnosis.evidence import gap_data
+from mcdem.diagnosis.gap_space import GapSpace
+from mcdem.diagnosis.gap_tests import NullDistribution
+from mcdem.diagnosis.location import locate
+from mcdem.diagnosis.observables import observables
+
+REPLICATES = 32
+PLANTED = 8 * 2 + 4 + 1  # the third observable, unloading, second displacement
+
+
+class World:
+    def __init__(self, seed):
+        self.world = SyntheticWorld(4, seed)
+        evidence = self.world.evidence(1, REPLICATES)
+        self.world.add_nuisance(evidence, "modulus", self.world.pattern(0.5), 1)
+        self.modulus = evidence.library.nuisances[0].linear
+        self.data = gap_data(evidence)
+        self.space = GapSpace(self.data.noise, REPLICATES, self.data.cells, self.data.free)
+        self.null = NullDistribution(self.data, REPLICATES, 1)
+
+    def locate(self, gap):
+        return locate(self.space, self.data, self.null, gap, GRID, Limits(false_alarm=0.05))
+
+    def gap_of(self, cells):
+        gap = np.full(len(self.data.mean), np.nan)
+        gap[:self.world.known] = 0
+        for cell, value in cells.items():
+            gap[cell] = value
+        return gap
+
+
+class Locations(unittest.TestCase):
+    def test_planted_cells_and_their_range_are_found(self):
+        world = World(1)
+        gap = world.gap_of({PLANTED: 8, PLANTED + 1: 10})
+        entry, = world.locate(gap).entries
+        known = observables()[2]
+        self.assertEqual((entry.observable, entry.phase, entry.region, entry.force_class), (known.name, "unload", known.region, None))
+        half = 0.5 * (GRID.displacement[1] - GRID.displacement[0])
+        np.testing.assert_allclose(entry.displacement_mm, 1e3 * np.array([GRID.displacement[1] - half, GRID.displacement[2] + half]))
+        sigma, shift = world.space.sigma[PLANTED + 1], world.space.fit_nuisances(gap)[0]
+        self.assertAlmostEqual(entry.z_score, 10 / sigma, 9)
+        self.assertAlmostEqual(entry.z_score_refitted, (10 - shift * world.modulus[PLANTED + 1]) / sigma, 9)
+        self.assertEqual(entry.difference, 10)
+
+    def test_ranges_do_not_exceed_the_stroke(self):
+        world = World(1)
+        entry, = world.locate(world.gap_of({3: -9})).entries
+        self.assertEqual(entry.displacement_mm[1], 1e3 * GRID.stroke)
+        self.assertLess(entry.z_score, 0)
+
+    def test_the_largest_is_first(self):
+        world = World(1)
+        # The third one is not adjacent to the first: the cell between them has no difference.
+        entries = world.locate(world.gap_of({0: 8, 8: -12, 2: 9})).entries
+        self.assertEqual(len(entries), 3)
+        self.assertEqual(entries[0].observable, observables()[1].name)
+        sizes = [abs(entry.z_score_refitted) for entry in entries]
+        self.assertEqual(sizes, sorted(sizes, reverse=True))
+
+    def test_loading_and_unloading_are_separate(self):
+        world = World(1)
+        entries = world.locate(world.gap_of({3: 9, 4: 10})).entries  # neighbours in the list of cells
+        self.assertEqual([entry.phase for entry in entries], ["unload", "load"])
+
+    def test_all_cells_are_listed(self):
+        world = World(1)
+        found = world.locate(world.data.gap)
+        self.assertEqual(len(found.cells), 32)
+        cell = found.cells[PLANTED]
+        self.assertEqual((cell.observable, cell.phase, cell.displacement_mm), (observables()[2].name, "unload", 1e3 * GRID.displacement[1]))
+        self.assertAlmostEqual(cell.z_score, world.data.gap[PLANTED] / world.space.sigma[PLANTED], 12)
+
+    def test_replicates_have_no_significant_cells(self):
+        alarms, draws = 0, 200
+        for seed in range(10, 10 + draws):
+            world = World(seed)
+            alarms += len(world.locate(world.data.gap + world.world.normal() * world.modulus).entries) > 0
+        self.assertLessEqual(alarms, 0.12 * draws)  # 5 % +- 1.5 %, and as much again for thresholds from 32 replicates
+        self.assertGreaterEqual(alarms, 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

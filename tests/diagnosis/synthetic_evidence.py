@@ -1,0 +1,78 @@
+"""Evidence without simulations: normal noise of known covariance on a few observables, and given signatures. synthetic_evidence.py"""
+import math
+
+import numpy as np
+
+from mcdem._engine import Random
+from mcdem.diagnosis.evidence import CandidateRange, Evidence, NuisancePrior
+from mcdem.diagnosis.library import Library
+from mcdem.diagnosis.observables import Grid, cells_of
+from mcdem.diagnosis.signature import Signature
+
+GRID = Grid([0.0126, 0.0183, 0.0240, 0.0294], 0.0036, 0.03)  # eight cells of each observable
+
+
+class SyntheticWorld:
+    """Cells of the first `observables_known` observables have values; the noise of adjacent cells is correlated."""
+
+    def __init__(self, observables_known, seed):
+        self.cells = len(cells_of(GRID))
+        self.known = 8 * observables_known
+        self.random = Random(seed, "challenge")
+
+    def normal(self):
+        return float(self.random.normals(1)[0])
+
+    def noise(self, size=1.0):
+        """Variance 1, correlation 1/2 between adjacent cells; NaN for unknown cells. (all cells,)"""
+        drawn = self.random.normals(self.known).tolist()
+        values = drawn[:1]
+        for number in drawn[1:]:
+            values.append(0.5 * values[-1] + math.sqrt(0.75) * number)
+        return size * np.append(values, np.full(self.cells - self.known, np.nan))
+
+    def pattern(self, size):
+        """`size` at each cell, with random signs."""
+        values = np.zeros(self.cells)
+        values[: self.known] = [-size if self.random.uniform() < 0.5 else size for _ in range(self.known)]
+        return values
+
+    def signature(self, name, linear):
+        return Signature(name, 10, np.array(linear), np.zeros(self.cells), np.tile(linear, (8, 1)))
+
+    def evidence(self, packings, replicates, packing_scatter=3.0):
+        """Replicates of packings that differ by `packing_scatter`. The last packing is that of the experiment; its replicates are the
+        baseline, and the observation is one more of them. No candidates."""
+        baseline = np.empty((packings * replicates, self.cells))
+        for p in range(packings):
+            centre = self.noise(packing_scatter)
+            for r in range(replicates):
+                baseline[p * replicates + r] = centre + self.noise()
+            observed = centre + self.noise()
+        packing = [p for p in range(packings) for _ in range(replicates)]
+        return evidence_of(observed, baseline[-replicates:].copy(), baseline, packing)
+
+    def add_effect(self, evidence, name, linear, low=-10.0, high=10.0):
+        evidence.library.effects.append(self.signature(name, linear))
+        evidence.candidates.append(CandidateRange(name, "", low, high))
+
+    def add_nuisance(self, evidence, name, linear, sigma):
+        evidence.library.nuisances.append(self.signature(name, linear))
+        evidence.nuisances.append(NuisancePrior(name, "", sigma))
+
+
+def evidence_of(observed, baseline, library_baseline, packing):
+    library = Library(grid=GRID, baseline=library_baseline, packing=packing, effects=[], nuisances=[], provenance={}, origin={})
+    return Evidence(observed=observed, baseline=baseline, library=library)
+
+
+class TwoEffects:
+    """Two effects of which the first is the cause, and a parameter."""
+
+    def __init__(self):
+        self.synthetic = SyntheticWorld(6, 3)
+        self.evidence = self.synthetic.evidence(1, 16)
+        self.synthetic.add_effect(self.evidence, "adhesion", self.synthetic.pattern(1))
+        self.synthetic.add_effect(self.evidence, "friction", self.synthetic.pattern(1))
+        self.synthetic.add_nuisance(self.evidence, "modulus", self.synthetic.pattern(0.5), 1)
+        self.evidence.observed += 4 * self.evidence.library.effects[0].linear
