@@ -18,7 +18,8 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME mcdem)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "pocl-opencl-icd | opencl-icd")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
-  "python3-h5py, python3-matplotlib, fonts-dejavu-core, python3-pandas, python3-ase, python3-meshio, python3-pint")
+  "python3-mcdem, python3-h5py, python3-matplotlib, fonts-dejavu-core, python3-plotly, python3-jinja2, python3-pandas, \
+python3-ase, python3-meshio, python3-pint")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmcdem-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libboost-dev, libeigen3-dev, libfmt-dev, libhdf5-dev, \
@@ -29,5 +30,5 @@ set(next ${Python3_VERSION_MAJOR}.${next})  # an extension module suits one vers
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-mcdem)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-  "python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}), python3 (<< ${next}), python3-numpy, pocl-opencl-icd | opencl-icd")
+  "python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}), python3 (<< ${next}), python3-numpy, python3-scipy, pocl-opencl-icd | opencl-icd")
 include(CPack)

@@ -2,9 +2,11 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <cstdio>
 #include <filesystem>
 
 #include "cl/error_text.h"
+#include "cl/kernel_cache.h"
 #include "core/errors.h"
 #include "core/version.h"
 #include "io/run_packing.h"
@@ -51,6 +53,9 @@ PYBIND11_MODULE(_engine, module) {
     mcdem::find_numpy();
     module.attr("__version__") = mcdem::version_text;
     mcdem::read_run_packing = mcdem::recorded_packing;
+    mcdem::kernel_cache_refused = [](const std::string& why) {  // perhaps without the GIL
+        std::fprintf(stderr, "mcdem: %s\n", why.c_str());
+    };
     mcdem::bind_scene(module);
     mcdem::bind_results(module);
     mcdem::bind_simulation(module);

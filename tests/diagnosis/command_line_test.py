@@ -37,6 +37,14 @@ class Words(unittest.TestCase):
             code, _, messages = said_by(*words)
             self.assertEqual((code, messages), (2, f"mcdem: {problem}\nmcdem: `mcdem --help` tells more\n"))
 
+    def test_of_a_challenge_are_checked(self):
+        for words, problem in ((["make", "s", "--out", "o", "--truth", ""], "--truth: must be a path, got nothing"),
+                               (["score", "a", "b", "--truth", ""], "--truth: must be a path, got nothing"),
+                               (["run", "a", "--scene", "s", "--library", "l", "--out", "o", "--library-packings", "0"],
+                                "--library-packings: must be a whole number from 1 to 10000, got 0")):
+            code, _, messages = said_by("challenge", *words)
+            self.assertEqual((code, messages.splitlines()[0]), (2, f"mcdem: {problem}"))
+
     def test_are_completed(self):
         for words, out in ((["diagnose", "--ref"], "--refine\tIf the scene is not"), (["diagnose", "--experiment", ""], ":folders\n"),
                            (["challenge", "run", "--library", ""], ":files\n"), (["challenge", "run", "--mp"], ""),

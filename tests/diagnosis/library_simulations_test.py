@@ -14,7 +14,8 @@ from mcdem.errors import InputError
 from mcdem.results.names import Phase
 
 CELLS = len(cells_of(GRID))
-PROBES = ("force_bias", -0.1, 0.2), ("plate_tilt", -0.015, 0.015), ("modulus", -500, 500)
+# The last ones are parameters, of which one has the name of an effect.
+PROBES = ("force_bias", -0.1, 0.2), ("plate_tilt", -0.015, 0.015), ("modulus", -500, 500), ("friction", -0.01, 0.01)
 HOLDS = [HoldScans(3, 4, 5, "force", Phase.unload, 0.01)]
 
 
@@ -34,7 +35,7 @@ class KnownSimulations:
 
     def facts(self):
         return {"packings": 2, "replicates": 3, "paired_rows": [0, 1, 3, 4], "probes": PROBES,
-                "candidates": [(name, "", -1, 1) for name in self.candidates], "nuisances": [("modulus", "Pa", 500)]}
+                "candidates": [(name, "", -1, 1) for name in self.candidates], "nuisances": [("modulus", "Pa", 500), ("friction", "", 0.01)]}
 
     def library(self, progress):
         rows = [self.runs]
@@ -52,7 +53,7 @@ class Build(unittest.TestCase):
         self.assertEqual((library.packing, library.grid, library.origin), ([0, 0, 0, 1, 1, 1], GRID, simulations.origin))
         self.assertEqual((set(library.provenance), library.provenance["device"], shown), ({"program", "device"}, "a device", [1]))
         self.assertEqual([one.name for one in library.effects], ["force_bias", "plate_tilt"])
-        self.assertEqual([one.name for one in library.nuisances], ["modulus"])
+        self.assertEqual([one.name for one in library.nuisances], ["modulus", "friction"])
         for k, signature in enumerate(library.effects + library.nuisances):
             self.assertEqual((signature.reach, signature.pairs()), (PROBES[k][2], 4))
             np.testing.assert_allclose(signature.linear, simulations.linear[k], atol=1e-9)

@@ -38,7 +38,7 @@ with tempfile.TemporaryDirectory(prefix="mcdem-deb-") as name:
     for package, file in packages.items():
         run("dpkg-deb", "-x", file, root)
         depends = run("dpkg-deb", "-f", file, "Depends")
-        for library in {"mcdem": ("libhdf5", "opencl-icd", "libc6"), "python3-mcdem": ("libhdf5", "python3-numpy"),
+        for library in {"mcdem": ("libhdf5", "opencl-icd", "libc6"), "python3-mcdem": ("libhdf5", "python3-numpy", "python3-scipy"),
                         "libmcdem-dev": ("libhdf5-dev",)}[package]:
             assert library in depends, f"{package}: depends on {depends}, not on {library}"
     check_installable(packages.values())

@@ -65,8 +65,7 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
 void finish_options(CLI::App& app) {
     for (CLI::Option* option : app.get_options()) {
         if (option->get_items_expected_max() == 1) option->capture_default_str();
-        const std::string name = option->get_single_name();
-        if (name == "out" || name == "library" || name == "truth")
+        if (option->get_single_name() == "out")
             option->check([](const std::string& path) {
                 return path.empty() ? std::string("must be a path, got nothing") : std::string();
             });

@@ -122,6 +122,8 @@ int run_python_module(const std::string& module, const std::vector<std::string>&
             "{}: cannot be started: install python3, or name a Python 3 by MCDEM_PYTHON", python));
     if (end.exit_code >= 0) return end.exit_code;
     if (end.signal == SIGINT || end.signal == SIGTERM || end.signal == SIGHUP) return exit_interrupted;
+    ::raise(end.signal);  // ends as the command would: distributed.py distinguishes it, cli.cpp hints at the
+                          // cause
     throw RunError(fmt::format("{}: was ended by signal {}", python, end.signal));
 }
 

@@ -29,8 +29,8 @@ GeneratedPacking generated(const Scene& scene) {
         problems.push_back(
             fmt::format("{}: a challenge needs one replica, got {}", scene.name, scene.replicas.size()));
     if (scene.replicas.front().box.shape != ContainerShape::box)
-        throw InputError(fmt::format("{}: a challenge's container.shape must be box, got {}", scene.name,
-                                     name(scene.replicas.front().box.shape)));
+        problems.push_back(fmt::format("{}: a challenge's container.shape must be box, got {}", scene.name,
+                                       name(scene.replicas.front().box.shape)));
     const auto* packing = std::get_if<GeneratedPacking>(&scene.replicas.front().packing.source);
     if (!packing)
         problems.push_back(

@@ -1,11 +1,7 @@
 // Simulates the cases of a challenge with all their hidden effects (host/python/mcdem/challenge/make.py).
 #pragma once
 #include <filesystem>
-#include <functional>
-#include <memory>
-#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cl/device.h"

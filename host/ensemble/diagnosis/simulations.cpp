@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <mutex>
 
 #include "core/errors.h"
 #include "ensemble/diagnosis/library_origin.h"
@@ -30,7 +31,12 @@ Simulations::Simulations(DiagnosisPlan plan, const std::filesystem::path& folder
     : plan_(std::move(plan)), store_(folder), choice_(std::move(device)) {}
 
 Device& Simulations::opened() {
-    if (!device_) device_ = std::make_unique<Device>(choice_);
+    static std::mutex mutex;
+    static std::map<std::string, std::weak_ptr<Device>> devices;  // by choice
+    if (device_) return *device_;
+    const std::lock_guard lock(mutex);
+    auto& open = devices[choice_];
+    if (!(device_ = open.lock())) open = device_ = std::make_shared<Device>(choice_);
     return *device_;
 }
 

@@ -1,9 +1,10 @@
 // The simulations that a diagnosis asks for, as observations: what Python gets (host/python/mcdem/diagnosis).
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,7 +34,8 @@ struct SimulationProgress {
 /// grid. Simulations are kept in a folder and never repeated.
 class Simulations {
 public:
-    /// `device`: a choice (cl/device.h); it is opened when something must be simulated.
+    /// `device`: a choice (cl/device.h); it is opened when something must be simulated, and shared by all
+    /// simulations of the same choice.
     Simulations(DiagnosisPlan plan, const std::filesystem::path& folder, std::string device);
 
     const DiagnosisPlan& plan() const { return plan_; }
@@ -99,7 +101,7 @@ private:
     DiagnosisPlan plan_;
     ObservationStore store_;
     std::string choice_;
-    std::unique_ptr<Device> device_;
+    std::shared_ptr<Device> device_;
     std::optional<std::vector<Trials>> parts_;
     std::vector<OtherProtocol> protocols_;
     std::map<std::string, std::string> causes_;

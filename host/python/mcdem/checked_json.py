@@ -17,7 +17,7 @@ class Invalid(ValueError):
     """What is invalid, and where."""
 
 
-def _finite(text: str) -> float:
+def finite(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):
         raise Invalid(f"parse error: {text[:20]} is not a finite number")
@@ -27,7 +27,7 @@ def _finite(text: str) -> float:
 def parsed(content: bytes) -> Any:
     """The document of an UTF-8 file, all of its numbers as float. Raises Invalid."""
     try:
-        return json.loads(content.decode("utf-8-sig"), parse_float=_finite, parse_int=_finite, parse_constant=_finite)
+        return json.loads(content.decode("utf-8-sig"), parse_float=finite, parse_int=finite, parse_constant=finite)
     except json.JSONDecodeError as error:
         raise Invalid(f"parse error at line {error.lineno}, column {error.colno}: {error.msg}") from error
     except UnicodeDecodeError as error:

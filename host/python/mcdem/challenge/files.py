@@ -8,7 +8,7 @@ from typing import TypeVar
 from ..errors import InputError
 from ..files import read_input
 from ..look import Path, leads_somewhere
-from ..checked_json import object_of
+from ..checked_json import finite, object_of
 
 FORMAT = 1
 # Names of cases are also names of files of results: only plain names that do not collide with other files.
@@ -55,7 +55,7 @@ def read_there(file: Path, if_missing: str) -> bytes:
 def document_of(kind: type[Document], content: bytes, file: Path, what: str, of_other_format: str = "") -> Document:
     """The dataclass in the content of a JSON file, which has this format if there is a text for others. Raises InputError."""
     try:
-        document = json.loads(content)
+        document = json.loads(content, parse_float=finite, parse_constant=finite)
         if of_other_format and isinstance(document, dict) and document.get("format") != FORMAT:
             raise InputError(f"{file}: {of_other_format}")
         return object_of(kind, document)

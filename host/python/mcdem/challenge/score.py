@@ -1,11 +1,12 @@
 """Score of a challenge: compares the answers with the sealed truth."""
-import concurrent.futures
 import functools
 import multiprocessing
 import os
 import statistics
 import threading
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from multiprocessing.connection import wait
 from typing import TypeVar
@@ -13,7 +14,7 @@ from typing import TypeVar
 from ..diagnosis.decision import Findings, Limits
 from ..diagnosis.evidence_file import read_evidence
 from ..diagnosis.library import Library
-from ..errors import InputError
+from ..errors import InputError, RunError
 from ..look import Path
 from .ablations import ABLATIONS, SIMPLER_METHODS, ablated_findings
 from .case import CaseKind, Challenge, ChallengeCase, in_first_half
@@ -134,9 +135,11 @@ def _try_other_arms(open: OpenChallenge, results: ChallengeResults, folder: Path
     nothing = [Findings() for _ in ABLATIONS], [Answer() for _ in SIMPLER_METHODS]
     files = {k: evidence_file(folder, case) for k, case in enumerate(open.cases) if not results.cases[k].problem}
     others = [nothing] * len(open.cases)
-    with concurrent.futures.ProcessPoolExecutor(len(os.sched_getaffinity(0)), multiprocessing.get_context("fork"), _begin_work,
-                                                (results.library,)) as pool:
-        for done, (k, found) in enumerate(zip(files, pool.map(_work, files.values())), 1):
-            others[k] = found
-            on_progress(done / len(files))
+    try:
+        with ProcessPoolExecutor(len(os.sched_getaffinity(0)), multiprocessing.get_context("fork"), _begin_work, (results.library,)) as pool:
+            for done, (k, found) in enumerate(zip(files, pool.map(_work, files.values())), 1):
+                others[k] = found
+                on_progress(done / len(files))
+    except BrokenProcessPool as error:
+        raise RunError("a process that tried other methods was killed: the machine may not have enough memory") from error
     return others

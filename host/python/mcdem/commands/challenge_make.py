@@ -34,7 +34,7 @@ MEASUREMENT = {
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     parser.add_argument("--out", metavar="DIR", type=output_path, required=True, help="Folder for the challenge")
-    parser.add_argument("--truth", metavar="FILE", default="", help="File for the truth; default: DIR/truth.json")
+    parser.add_argument("--truth", metavar="FILE", type=output_path, help="File for the truth; default: DIR/truth.json")
     parser.add_argument("--seed", metavar="S", type=whole_in(0, 2**64 - 1),
                         help="Seed of all draws; default: drawn at random and not shown")
     parser.add_argument("--effects", metavar="NAME,..", type=names, action="extend", default=[],

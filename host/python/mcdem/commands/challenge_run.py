@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from ..parts import PartedWork, SharedWork, add_sharing_options, interruptible, is_shared, share
 from ..program import say
 from ..progress import Progress
-from .command_line import names, output_path, whole_at_least_zero, whole_in
+from .command_line import names, output_path, whole_in
 from .scene_options import add_scene_options, read_scene
 
 if TYPE_CHECKING:
@@ -36,7 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="File with the simulated changes by each effect; computed and written if it does not exist")
     parser.add_argument("--out", metavar="DIR", type=output_path, required=True, help="Folder for the diagnoses")
     for name, (value, text) in NUMBERS.items():
-        parser.add_argument("--" + name.replace("_", "-"), metavar="N", type=whole_at_least_zero, default=value, help=text)
+        parser.add_argument("--" + name.replace("_", "-"), metavar="N", type=whole_in(0 if name == "confirmations" else 1, 10_000),
+                            default=value, help=text)
     parser.add_argument("--candidates", metavar="NAME,..", type=names, action="extend", default=[],
                         help="Effects of a new library; default: all")
     parser.add_argument("--seed", metavar="N", type=whole_in(0, 2**64 - 1), default=1, help="Seed of all random numbers of the diagnoses")

@@ -17,7 +17,7 @@ Example:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("CHALLENGE", help="Folder of the challenge")
     parser.add_argument("DIAGNOSES", type=output_path, help="Folder of the diagnoses; the score is written to it")
-    parser.add_argument("--truth", metavar="FILE", default="", help="File with the truth (default: CHALLENGE/truth.json)")
+    parser.add_argument("--truth", metavar="FILE", type=output_path, help="File with the truth (default: CHALLENGE/truth.json)")
     parser.add_argument("--no-figures", action="store_true", help="Do not draw figures")
 
 
@@ -42,9 +42,9 @@ def run(options: argparse.Namespace) -> int:
             score = score_challenge(truth, challenge, out, progress.show)
         for problem in score.not_diagnosed:
             say(f"not diagnosed: {problem}")
-        print(f"{to_text(table_of_merits(score))}\n{to_text(table_of_arms(score))}")
-        for file, (kind, text_of) in files.items():
+        for file, (kind, text_of) in files.items():  # before anything is printed, which may fail
             replace_own(file, kind, text_of(score).encode())
+        print(f"{to_text(table_of_merits(score))}\n{to_text(table_of_arms(score))}")
         print(*(f"wrote {file}" for file in files), sep="\n", flush=True)
         if not options.no_figures:
             for figure in draw_if_possible(lambda: draw_figures(out, score_figure_values(score))):

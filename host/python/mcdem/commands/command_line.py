@@ -10,7 +10,7 @@ from ..command import ask
 from ..program import say
 from . import COMMANDS
 
-ABOUT = "Presents results of mcdem: dense packings of soft grains with multi-contact forces (MC-DEM)."
+ABOUT = "Diagnoses experiments, and presents results of mcdem: dense packings of soft grains with multi-contact forces (MC-DEM)."
 EXIT_CODES = "Exit codes: 0 success, 1 failure (also if output cannot be written), 2 invalid input, 130 interrupted."
 BAD_INPUT = 2
 

@@ -1,5 +1,4 @@
 """From evidence to diagnosis: detection limits, existence and location of the gap, effects, and gap reduction."""
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import hypot
 
@@ -262,8 +261,8 @@ class DiagnosisBuilder:
                        fitted_displacement_mm=(0, millimetres(FITTED_PART * self._evidence.library.grid.stroke)),
                        confirmed=None if self._by_likelihood(explaining) else explaining.confirmed_reduction)
 
-    def diagnosis(self, not_testable: Sequence[str] = ()) -> Diagnosis:
-        """Without what the runner adds: refinements, seconds and provenance."""
+    def diagnosis(self) -> Diagnosis:
+        """Without what diagnose.py adds: what is not testable, refinements, seconds and provenance."""
         evidence, limits, data, findings, decision = self._evidence, self._limits, self.data, self.findings, self.decision
         null, statistics, grid = self._null, self._statistics, evidence.library.grid
         detected, decided = decision.verdict != Verdict.no_gap, self.has_decided()
@@ -287,7 +286,7 @@ class DiagnosisBuilder:
             nuisances=tuple(nuisance_fits(evidence, self._space, data.gap)),
             check_first=tuple(self.check_first()),
             missing_bins=tuple(data.missing),
-            not_testable=tuple(not_testable),
+            not_testable=(),
             next=tuple(next_measurements(evidence, data, findings, decision, limits)),
             packings=tuple(packing_agreements(evidence, data, null, proposal, limits)),
             provenance={})

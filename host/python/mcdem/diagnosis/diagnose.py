@@ -127,7 +127,7 @@ class _Diagnosing:
     def _amplitudes(self, inference: Inference, proposal: int, fit: PartialFit) -> Amplitudes:
         """Of the effects of a proposal, and of all nuisances."""
         builder = inference.builder
-        shifts = dict(zip((name for name, *_ in self.facts["nuisances"]), map(float, fit.nuisances)))
+        shifts = {prior.name: float(shift) for prior, shift in zip(inference.evidence.nuisances, fit.nuisances, strict=True)}
         effects = []
         for candidate, amplitude in zip(builder.findings.proposals[proposal].candidates, fit.amplitudes):
             name = builder.data.name(candidate)
@@ -159,15 +159,14 @@ class _Diagnosing:
 
     def _gather(self) -> Evidence:
         library = fitting_library(self.simulations, self.options.library)
-        if self.has_metrics:  # first, because simulations with complete recordings are not repeated
-            self.simulations.record([], self.options.replicates, self._stage("recordings"))
         is_own = library is None
         if library is None:
+            self._record()
             library = self._new_library()
             baseline = library.baseline
         else:
             compare_at(self.simulations, library.grid)
-            baseline = self.simulations.baseline(self._stage("baseline"))
+            baseline = self._simulated_baseline("baseline")
         evidence = Evidence(observed=baseline[0], baseline=baseline, library=library,
                             candidates=[CandidateRange(*row) for row in self.facts["candidates"]],
                             nuisances=[NuisancePrior(*row) for row in self.facts["nuisances"]], seed=self.options.seed,
@@ -185,10 +184,20 @@ class _Diagnosing:
             self.listener.note(f"{file}: another process wrote this library first; it is kept")
         return library
 
+    def _record(self) -> None:
+        """Before simulations of the baseline, because those with complete recordings are not repeated."""
+        if self.has_metrics:
+            self.simulations.record([], self.options.replicates, self._stage("recordings"))
+
+    def _simulated_baseline(self, stage: str) -> Floats:
+        self._record()
+        return self.simulations.baseline(self._stage(stage))
+
     def _take_baseline(self, evidence: Evidence, runs: Floats) -> None:
         """Runs of the unchanged scene (packings x replicates, cells), one packing after the other."""
-        if evidence.library_is_own:
-            evidence.library.baseline = runs
+        if evidence.library_is_own:  # all rows again: what failed before may not fail now
+            packing = [row * self.packings // len(runs) for row in range(len(runs))]
+            evidence.library = replace(evidence.library, baseline=runs, packing=packing)
         packings = zip(self.facts["names"], self.simulations.observed(), runs.reshape(self.packings, -1, runs.shape[1]), strict=True)
         evidence.packings = [PackingEvidence(name, observed, baseline) for name, observed, baseline in packings]
         take_means(evidence)
@@ -210,7 +219,7 @@ class _Diagnosing:
         self.simulations.follow_motion(MAX_SLOWDOWN)
         if len(evidence.candidates) > 1:
             evidence.candidates = [candidate for candidate in evidence.candidates if candidate.name != "plate_speed"]
-        self._take_baseline(evidence, self.simulations.baseline(self._stage("baseline with the experiment's plate")))
+        self._take_baseline(evidence, self._simulated_baseline("baseline with the experiment's plate"))
         self._note_failures(evidence)
 
     def _refinement_of(self, inference: Inference, most: float) -> Refinement:
@@ -228,7 +237,7 @@ class _Diagnosing:
         self.refinements.append(replace(refinement, done=True))
         self.listener.note("the gap is consistent with a simulation that is not converged: continuing with "
                            f"{refinement.key} = {shortest(refinement.to)} instead of {shortest(refinement.was)}")
-        self._take_baseline(evidence, self.simulations.baseline(self._stage("refined baseline")))
+        self._take_baseline(evidence, self._simulated_baseline("refined baseline"))
         evidence.library.effects = [continued_from(signature, 1 - part) if signature.name == refinement.effect else signature
                                     for signature in evidence.library.effects]
         self._note_failures(evidence)
@@ -236,7 +245,7 @@ class _Diagnosing:
     # What follows
 
     def _diagnosis(self, inference: Inference) -> Diagnosis:
-        diagnosis = replace(inference.builder.diagnosis(self.facts["hindered"]), not_testable=tuple(self.hindered),
+        diagnosis = replace(inference.builder.diagnosis(), not_testable=tuple(self.hindered),
                             refinements=tuple(self.refinements))
         steps = list(diagnosis.next)
         if diagnosis.verdict == Verdict.group:

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from ..errors import InputError
 from ..files import read_input
 from ..look import Path, leads_somewhere
-from ..checked_json import Invalid, value_of
+from ..checked_json import Invalid, finite, value_of
 from .decision import Findings
 from .evidence import CandidateRange, Evidence, NuisancePrior
 from .json_numbers import array_of, expect_json, matrix_of, number_list
@@ -53,7 +53,7 @@ def _read_file(file: Path, what: str, document_of: Callable[[Any], Document]) ->
         raise InputError(f"{file}: is missing; `mcdem challenge run` writes it")
     content = read_input(file)
     try:
-        return document_of(json.loads(content))
+        return document_of(json.loads(content, parse_float=finite, parse_constant=finite))
     except (OverflowError, RecursionError, ValueError) as problem:  # numbers that are too large, too many lists, no JSON
         raise InputError(f"{file}: not {what} ({problem})") from problem
 

@@ -28,6 +28,7 @@ class Inference:
     parameters fitted to the first part of the data. `confirmations`: replicates of each; 0: none."""
 
     def __init__(self, evidence: Evidence, limits: Limits, confirmations: int) -> None:
+        self.evidence = evidence
         self.builder = DiagnosisBuilder(evidence, limits)
         self._wanted = confirmations > 0 and self.builder.decision.verdict != Verdict.no_gap
         self._tried = list(range(len(self.builder.findings.proposals)))
@@ -48,7 +49,8 @@ class Inference:
     def add(self, results: Sequence[Floats]) -> None:
         """The runs of next_runs(): (replicates, all cells) for each fit."""
         if not self._in_rounds():
-            k, = (k for k in [self.builder.wants_held_out()] if k is not None)
+            k = self.builder.wants_held_out()
+            assert k is not None
             self.builder.confirm_held_out(k, results[0])
             return
         for k, runs in zip(self._tried, results, strict=True):

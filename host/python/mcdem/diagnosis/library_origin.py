@@ -77,7 +77,7 @@ def expect_alike_loads(library: Library, baseline: Floats, file: Path) -> None:
     `baseline`: (replicates, cells) of the library's grid.
     """
     own = _load(library.grid, library.baseline)
-    times = _load(library.grid, baseline) / own if own else math.nan
+    times = _load(library.grid, baseline) / own if own else math.inf
     if max(times, 1 / times if times else math.inf) > ALIKE_LOADS:
         raise InputError(f"{file}: at the same displacements the scene carries {times:.2f} times the load on this experiment's packing that "
                          "it carries on the library's packings, so the effects differ: leave out --library, or give another file, made "

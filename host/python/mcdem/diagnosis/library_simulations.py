@@ -5,7 +5,6 @@ from .. import _engine as engine
 from ..look import Path, is_there
 from ..outputs import remove_temporaries_of
 from ..results.names import Phase
-from .effects import find_effect
 from .library import Library, read_library
 from .library_origin import expect_library_of, expect_origin
 from .observables import Grid, HoldScans
@@ -32,13 +31,12 @@ def build_library(simulations: engine.Simulations, progress: Progress | None = N
     rows = simulations.library(progress)
     paired, count = facts["paired_rows"], facts["packings"] * facts["replicates"]
     baseline = rows[:count]
-    library = Library(grid=grid_of(simulations), baseline=baseline, packing=[row // facts["replicates"] for row in range(count)],
-                      origin=simulations.origin, provenance={"program": engine.__version__, "device": simulations.device})
-    differences = (rows[count:].reshape(-1, 2, len(paired), rows.shape[1]) - baseline[paired])
-    for (name, first, second), (at_first, at_second) in zip(facts["probes"], differences, strict=True):
-        signatures = library.effects if find_effect(name) else library.nuisances
-        signatures.append(learn_signature(name, first, second, at_first, at_second))
-    return library
+    differences = rows[count:].reshape(-1, 2, len(paired), rows.shape[1]) - baseline[paired]
+    signatures = [learn_signature(*probe, *pair) for probe, pair in zip(facts["probes"], differences, strict=True)]
+    effects = len(facts["candidates"])  # they are first; a nuisance may have the name of an effect
+    return Library(grid=grid_of(simulations), baseline=baseline, packing=[row // facts["replicates"] for row in range(count)],
+                   effects=signatures[:effects], nuisances=signatures[effects:],
+                   provenance={"program": engine.__version__, "device": simulations.device}, origin=simulations.origin)
 
 
 def fitting_library(simulations: engine.Simulations, file: Path | None) -> Library | None:

@@ -1,4 +1,4 @@
-"""An observation: one number for each observable, phase and displacement, which is called a cell (host/diagnose/observation.h)."""
+"""An observation: one number for each observable, phase and displacement, which is called a cell (host/diagnose/observe/observation.h)."""
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import product
@@ -38,7 +38,7 @@ class HoldScans:
     begin: int
     first: int  # the first one taken during the hold
     end: int
-    keep: str  # position or force
+    keep: str  # position, force or stress
     phase: Phase
     displacement: float  # of the experiment [m]
 

@@ -1,7 +1,6 @@
-"""Prints a diagnosis and writes what shows it beside diagnosis.json: python3 -m mcdem.report.present_diagnosis FOLDER [page] [figures]."""
+"""Prints a diagnosis and writes what shows it beside diagnosis.json."""
 import json
 import os
-import sys
 from typing import Any
 
 from ..diagnosis.diagnosis_types import Diagnosis
@@ -68,7 +67,3 @@ def _with_sentence(file: str, document: dict[str, Any], diagnosis: Diagnosis) ->
             written["sentence"] = verdict_sentence(diagnosis)
     replace_own(file, DIAGNOSIS, (json.dumps(written, indent=2, ensure_ascii=False) + "\n").encode())
     return written
-
-
-if __name__ == "__main__":
-    present(sys.argv[1], "page" in sys.argv[2:], "figures" in sys.argv[2:])
