@@ -71,10 +71,7 @@ void bind_case_simulator(py::module_& module) {
         .def("write", &CaseSimulator::write, py::arg("k"), py::arg("folder"));
     module.def("outside_effects", &outside_rows,
                "Effects that no library has: name, smallest and largest amplitude, whether either sign.");
-    module.def(
-        "derived_seed",
-        [](std::uint64_t seed, std::uint64_t number) { return scattered(scattered(seed) + number) >> 16; },
-        py::arg("seed"), py::arg("number"));
+    module.def("derived_seed", &derived_seed, py::arg("seed"), py::arg("number"));
 }
 
 }  // namespace mcdem::python

@@ -77,15 +77,11 @@ py::tuple forces_of_path(const Scene& scene, const Array& time, const Array& pos
         }
     if (!velocity) fill_velocities(times, path);
     Watch watch{py::none()};
-    std::vector<GrainForces> forces;
-    try {
-        const py::gil_scoped_release others_go_on;
+    const std::vector<GrainForces> forces = without_gil(watch, [&] {
         Device device(choice);
-        forces =
-            forces_along(device, scene, packings.front(), times, path, [&] { return watch.stop_wanted(); });
-    } catch (const Interrupted&) {
-    }
-    watch.raise();
+        return forces_along(device, scene, packings.front(), times, path,
+                            [&] { return watch.stop_wanted(); });
+    });
     return py::make_tuple(array_of(forces, &GrainForces::force, grains),
                           array_of(forces, &GrainForces::torque, grains));
 }

@@ -78,22 +78,15 @@ std::unique_ptr<Simulations> of_others(const Scene& scene, const fs::path& exper
                                        const fs::path& store, const std::vector<std::string>& candidates,
                                        int replicates, int pairs, std::uint64_t seed,
                                        const std::string& device) {
-    Watch watch{py::none()};
-    std::unique_ptr<Simulations> simulations;
-    try {
-        const py::gil_scoped_release others_go_on;
-        simulations = std::make_unique<Simulations>(
+    return watched(py::none(), [&](const TrialOptions& options) {
+        return std::make_unique<Simulations>(
             plan_of_others(scene, read_experiment(experiment), packings,
-                           plan_options(candidates, replicates, pairs, seed, false),
-                           [&] { return watch.stop_wanted(); }),
+                           plan_options(candidates, replicates, pairs, seed, false), options.stop_wanted),
             store, device);
-    } catch (const Interrupted&) {
-    }
-    watch.raise();
-    return simulations;
+    });
 }
 
-py::dict facts(Simulations& simulations) {
+py::dict facts(const Simulations& simulations) {
     const DiagnosisPlan& plan = simulations.plan();
     const Model& model = plan.library.packings.front().model;
     py::list candidates, nuisances, probes, names;
@@ -107,14 +100,14 @@ py::dict facts(Simulations& simulations) {
     }
     for (const Nuisance& nuisance : plan.library.nuisances)
         nuisances.append(py::make_tuple(nuisance.name, nuisance.unit, nuisance.sigma));
-    for (const ProbeAmplitudes& probe : simulations.probes())
-        probes.append(py::make_tuple(probe.name, probe.first, probe.second));
+    for (const Probe& probe : probes_of(plan.library))
+        probes.append(py::make_tuple(probe.name, probe.amplitudes[0], probe.amplitudes[1]));
     for (const Experiment& experiment : plan.experiments) names.append(experiment.name);
     return py::dict(
-        py::arg("names") = names, py::arg("packings") = simulations.packings(),
+        py::arg("names") = names, py::arg("packings") = plan.library.packings.size(),
         py::arg("replicates") = plan.library.replicates, py::arg("candidates") = candidates,
         py::arg("hindered") = plan.choice.hindered, py::arg("nuisances") = nuisances,
-        py::arg("probes") = probes, py::arg("paired_rows") = simulations.paired_rows(),
+        py::arg("probes") = probes, py::arg("paired_rows") = paired_trials(plan.library),
         py::arg("has_programme") = !model.replica.programme.empty(),
         py::arg("other_materials") = other_materials(model.replica, plan.experiments.front().materials));
 }
@@ -129,25 +122,17 @@ std::vector<Change> tuples(const std::vector<SettingChange>& changes) {
 }
 
 void bind_runs(py::class_<Simulations>& type) {
+    using Runs = Eigen::MatrixXd (Simulations::*)(const TrialOptions&);
+    for (const auto& [name, runs] : {std::pair<const char*, Runs>{"library", &Simulations::library},
+                                     {"baseline", &Simulations::baseline},
+                                     {"finer_baseline", &Simulations::finer_baseline}})
+        type.def(
+            name,
+            [runs = runs](Simulations& s, py::object progress) {
+                return watched(std::move(progress), [&](const auto& p) { return (s.*runs)(p); });
+            },
+            py::arg("progress") = py::none());
     type.def(
-            "library",
-            [](Simulations& s, py::object progress) {
-                return watched(std::move(progress), [&](const auto& p) { return s.library(p); });
-            },
-            py::arg("progress") = py::none())
-        .def(
-            "baseline",
-            [](Simulations& s, py::object progress) {
-                return watched(std::move(progress), [&](const auto& p) { return s.baseline(p); });
-            },
-            py::arg("progress") = py::none())
-        .def(
-            "finer_baseline",
-            [](Simulations& s, py::object progress) {
-                return watched(std::move(progress), [&](const auto& p) { return s.finer_baseline(p); });
-            },
-            py::arg("progress") = py::none())
-        .def(
             "fitted",
             [](Simulations& s, const std::vector<Amplitudes>& fits, int runs,
                std::optional<std::size_t> protocol, py::object progress) {

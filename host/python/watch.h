@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/errors.h"
-#include "ensemble/diagnosis/simulations.h"
+#include "ensemble/diagnosis/observe_trials.h"
 
 namespace mcdem::inline python {
 
@@ -72,33 +72,34 @@ private:
     std::exception_ptr error_;
 };
 
-/// Calls `work` without the GIL; the JSON text that it returns becomes Python objects. Throws what it throws,
-/// or instead of Interrupted the exception that `watch` has stored.
+/// Calls `work` without the GIL. Throws what it throws, or instead of Interrupted the exception that `watch`
+/// has stored.
 template <class Work>
-pybind11::object json_result(Watch& watch, Work work) {
-    std::string text;
+auto without_gil(Watch& watch, Work work) {
+    decltype(work()) result{};
     try {
         const pybind11::gil_scoped_release others_go_on;
-        text = work();
-    } catch (const Interrupted&) {
-    }
-    watch.raise();
-    return pybind11::module_::import("json").attr("loads")(text);
-}
-
-/// Calls `work` with the progress of a Python callable and without the GIL.
-template <class Work>
-auto watched(pybind11::object progress, Work work) {
-    Watch watch(std::move(progress));
-    decltype(work(SimulationProgress())) result{};
-    try {
-        const pybind11::gil_scoped_release others_go_on;
-        result = work(SimulationProgress{[&](double part) { watch.show_progress(part); },
-                                         [&] { return watch.stop_wanted(); }});
+        result = work();
     } catch (const Interrupted&) {
     }
     watch.raise();
     return result;
+}
+
+/// The same; the JSON text that `work` returns becomes Python objects.
+template <class Work>
+pybind11::object json_result(Watch& watch, Work work) {
+    return pybind11::module_::import("json").attr("loads")(without_gil(watch, work));
+}
+
+/// The same with the progress of a Python callable; `work` gets TrialOptions.
+template <class Work>
+auto watched(pybind11::object progress, Work work) {
+    Watch watch(std::move(progress));
+    return without_gil(watch, [&] {
+        return work(TrialOptions{[&](double part) { watch.show_progress(part); },
+                                 [&] { return watch.stop_wanted(); }});
+    });
 }
 
 }  // namespace mcdem::python

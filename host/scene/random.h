@@ -36,6 +36,12 @@ constexpr std::uint64_t scattered(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
+/// The seed of the part `number` of what has the seed `seed`: small enough for every file format, and
+/// independent for consecutive seeds.
+constexpr std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t number) {
+    return scattered(scattered(seed) + number) >> 16;
+}
+
 /// Uniform in the open interval (0, 1), from the upper bits.
 constexpr double unit_interval(std::uint64_t bits) {
     return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53;

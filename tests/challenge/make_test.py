@@ -7,6 +7,8 @@ import pathlib
 import tempfile
 import unittest
 
+from small_scene import scene_text
+
 from mcdem import _engine as engine
 from mcdem.challenge.files import read_open_challenge
 from mcdem.challenge.make import Options, make_challenge
@@ -14,25 +16,8 @@ from mcdem.challenge.plan import ChallengeSize, draw_challenge, model_of
 from mcdem.challenge.truth import open_truth, seal_of
 from mcdem.errors import InputError, RunError
 
-# 27 grains, very dense at the end: strongly interacting contacts have no static solution there.
-DENSE = """name = "dense"
-[box]
-size_x = 0.062
-size_y = 0.062
-[contact]
-model = "independent"
-[packing]
-count = 27
-packing_fraction = 0.59
-[plate]
-start = 0.0625
-end = 0.0490
-speed = 0.3
-[protocol]
-stop_at_scans = false
-scans_per_stroke = 3
-relax_time = 0.05
-"""
+# Very dense at the end: strongly interacting contacts have no static solution there.
+DENSE = scene_text("dense", 0.0490)
 
 
 class Make(unittest.TestCase):

@@ -6,27 +6,11 @@ import tempfile
 import unittest
 
 import numpy as np
+from small_scene import scene_text
 
 from mcdem._engine import CaseSimulator, outside_effects, scene_of_options
 
-SCENE = """name = "small"
-[box]
-size_x = 0.062
-size_y = 0.062
-[contact]
-model = "independent"
-[packing]
-count = 27
-packing_fraction = 0.59
-[plate]
-start = 0.0625
-end = 0.0555
-speed = 0.3
-[protocol]
-stop_at_scans = false
-scans_per_stroke = 3
-relax_time = 0.05
-"""
+SCENE = scene_text("small", 0.0555)
 AMPLITUDES = {"vertical_stretch": 0.01, "plate_backlash": 1e-3, "soft_walls": 2.0, "box_error": 0.02}
 
 

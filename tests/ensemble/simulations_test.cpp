@@ -36,21 +36,21 @@ struct SmallSimulations : testing::Test {
 TEST_F(SmallSimulations, OfALibraryAreBaselineEffectsAndNuisances) {
     Simulations all = simulations();
     const Eigen::MatrixXd rows = all.library({});
-    EXPECT_THAT(all.paired_rows(), ElementsAre(0u, 1u));
-    const std::vector<ProbeAmplitudes> probes = all.probes();
+    EXPECT_THAT(paired_trials(plan.library), ElementsAre(0u, 1u));
+    const std::vector<Probe> probes = probes_of(plan.library);
     ASSERT_EQ(probes.size(), 2 + plan.library.nuisances.size());
     EXPECT_EQ(probes[0].name, "force_bias");
     EXPECT_EQ(probes[1].name, "plate_tilt");
-    EXPECT_EQ(probes[1].first, -0.015);
-    EXPECT_EQ(probes[1].second, 0.015);
+    EXPECT_EQ(probes[1].amplitudes[0], -0.015);
+    EXPECT_EQ(probes[1].amplitudes[1], 0.015);
     EXPECT_EQ(probes[2].name, "modulus");
-    EXPECT_EQ(probes[2].second, plan.library.nuisances[0].sigma);
+    EXPECT_EQ(probes[2].amplitudes[1], plan.library.nuisances[0].sigma);
     ASSERT_EQ(rows.rows(), 3 + 4 * static_cast<Eigen::Index>(probes.size()));
     ASSERT_EQ(rows.cols(), static_cast<Eigen::Index>(cells_of(small.common.grid).size()));
     for (const Eigen::Index row : {3, 4, 5, 6})
         EXPECT_EQ(rows(row, 0), rows((row - 3) % 2, 0)) << "the plate's force is not a contact force";
     // ln F of the plate increases by one with ln E, except for rearrangements.
-    const double sigma = probes[2].second;
+    const double sigma = probes[2].amplitudes[1];
     EXPECT_GT((rows(13, 1) + rows(14, 1) - rows(11, 1) - rows(12, 1)) / 2, 0.3 * 2 * sigma);
     // The same from trials made here.
     std::vector<Trial> trials = baseline_trials(plan.library);
@@ -75,7 +75,7 @@ TEST_F(SmallSimulations, OfALibraryAreMadeOfEveryPacking) {
     plan.library.nuisances.clear();
     Simulations all = simulations();
     const Eigen::MatrixXd rows = all.library({});
-    EXPECT_THAT(all.paired_rows(), ElementsAre(0u, 2u));  // one of each packing
+    EXPECT_THAT(paired_trials(plan.library), ElementsAre(0u, 2u));  // one of each packing
     ASSERT_EQ(rows.rows(), 2 * 2 + 2 * 2);
     EXPECT_FALSE(same(rows.row(0), rows.row(2)));
     EXPECT_EQ(rows(4, 0), rows(0, 0)) << "the plate's force, without contact forces";

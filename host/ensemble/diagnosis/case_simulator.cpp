@@ -83,7 +83,7 @@ Model CaseSimulator::model_of_case(const SimulatedCase& c) const {
 }
 
 std::vector<std::string> CaseSimulator::simulate(std::vector<SimulatedCase> cases, Part part,
-                                                 const SimulationProgress& progress) {
+                                                 const TrialOptions& options) {
     cases_ = std::move(cases);
     Scene batch = scene_;
     batch.replicas.clear();
@@ -96,8 +96,8 @@ std::vector<std::string> CaseSimulator::simulate(std::vector<SimulatedCase> case
     const auto loading = static_cast<std::size_t>(1 + stated_.replica.protocol.scans_per_stroke);
     recordings_ = mcdem::simulate(device_, batch, starts, part == Part::loading ? loading : SIZE_MAX,
                                   [&](double fraction) {
-                                      progress.on_progress(fraction);
-                                      if (progress.stop_wanted()) throw Interrupted();
+                                      options.on_progress(fraction);
+                                      if (options.stop_wanted()) throw Interrupted();
                                   });
     std::vector<std::string> failures;
     for (const Recording& recording : recordings_)

@@ -39,7 +39,7 @@ public:
     /// not. The recordings are kept for write() until the next call.
     enum class Part { loading, all };
     std::vector<std::string> simulate(std::vector<SimulatedCase> cases, Part part,
-                                      const SimulationProgress& progress);
+                                      const TrialOptions& options);
 
     /// Writes the experiment of a case of the last call: its recording measured by the instrument of the
     /// case, in the stated box, with the name of its folder.

@@ -121,8 +121,7 @@ std::vector<Packing> other_packings(Scene scene, const Replica& replica, int cou
     scene.replicas.clear();
     for (int p = 0; p < count; ++p) {
         scene.replicas.push_back(replica);
-        scene.replicas.back().packing.seed =
-            scattered(scattered(seed + apart) + static_cast<std::uint64_t>(p)) >> 16;
+        scene.replicas.back().packing.seed = derived_seed(seed + apart, static_cast<std::uint64_t>(p));
     }
     return make_packings(scene, stop_wanted);
 }

@@ -16,10 +16,6 @@ namespace {
 /// Number of the first trials of a library with complete recordings, for the metrics of the paper.
 constexpr std::size_t trials_recorded = 4;
 
-TrialOptions options_of(const SimulationProgress& progress) {
-    return {progress.on_progress, progress.stop_wanted};
-}
-
 void keep_recordings(std::vector<Trial>& trials) {
     for (std::size_t t = 0; t < std::min(trials.size(), trials_recorded); ++t)
         trials[t].keep_recording = true;
@@ -54,34 +50,23 @@ Eigen::MatrixXd Simulations::observed() const {
     return rows;
 }
 
-Eigen::MatrixXd Simulations::observe_probes(const Trials& trials, const SimulationProgress& progress) {
-    TrialOptions options = options_of(progress);
+Eigen::MatrixXd Simulations::observe_probes(const Trials& trials, TrialOptions options) {
     options.on_failure = [this](std::size_t trial, const Failure& failure) {
         causes_.emplace(probe_of_trial(plan_.library, trial), failure.cause);
     };
     return observe_trials(opened(), plan_.common, trials, store_, options);
 }
 
-Eigen::MatrixXd Simulations::library(const SimulationProgress& progress) {
-    return observe_probes(library_trials(plan_.library), progress);
+Eigen::MatrixXd Simulations::library(const TrialOptions& options) {
+    return observe_probes(library_trials(plan_.library), options);
 }
 
-std::vector<std::size_t> Simulations::paired_rows() const { return paired_trials(plan_.library); }
-
-std::vector<ProbeAmplitudes> Simulations::probes() const {
-    std::vector<ProbeAmplitudes> all;
-    for (const Probe& probe : probes_of(plan_.library))
-        all.push_back({probe.name, probe.amplitudes[0], probe.amplitudes[1]});
-    return all;
+Eigen::MatrixXd Simulations::baseline(const TrialOptions& options) {
+    return observe_probes(baseline_trials(plan_.library), options);
 }
 
-Eigen::MatrixXd Simulations::baseline(const SimulationProgress& progress) {
-    return observe_probes(baseline_trials(plan_.library), progress);
-}
-
-Eigen::MatrixXd Simulations::finer_baseline(const SimulationProgress& progress) {
-    return observe_trials(opened(), plan_.common, finer_baseline_trials(plan_.library), store_,
-                          options_of(progress));
+Eigen::MatrixXd Simulations::finer_baseline(const TrialOptions& options) {
+    return observe_trials(opened(), plan_.common, finer_baseline_trials(plan_.library), store_, options);
 }
 
 void Simulations::apply(Model& model, const Amplitudes& amplitudes) const {
@@ -105,7 +90,7 @@ Simulations::Trials Simulations::trials_of(const Amplitudes& fit, int runs) cons
 }
 
 Eigen::MatrixXd Simulations::fitted(const std::vector<Amplitudes>& fits, int runs,
-                                    std::optional<std::size_t> protocol, const SimulationProgress& progress) {
+                                    std::optional<std::size_t> protocol, const TrialOptions& options) {
     Trials all;
     for (const Amplitudes& fit : fits)
         for (Trial& trial : trials_of(fit, runs)) {
@@ -113,7 +98,7 @@ Eigen::MatrixXd Simulations::fitted(const std::vector<Amplitudes>& fits, int run
             all.push_back(std::move(trial));
         }
     return observe_trials(opened(), protocol ? protocols_.at(*protocol).common : plan_.common, all, store_,
-                          options_of(progress));
+                          options);
 }
 
 Simulations::Trials Simulations::recorded_trials(const Amplitudes& fit, int runs) const {
@@ -123,8 +108,8 @@ Simulations::Trials Simulations::recorded_trials(const Amplitudes& fit, int runs
     return trials;
 }
 
-void Simulations::record(const Amplitudes& fit, int runs, const SimulationProgress& progress) {
-    observe_trials(opened(), plan_.common, recorded_trials(fit, runs), store_, options_of(progress));
+void Simulations::record(const Amplitudes& fit, int runs, const TrialOptions& options) {
+    observe_trials(opened(), plan_.common, recorded_trials(fit, runs), store_, options);
 }
 
 PaperMetrics Simulations::metrics(const Amplitudes& fit, int before, int after) {
@@ -201,8 +186,8 @@ std::vector<std::size_t> Simulations::missing_parts(const std::string& device) {
     return numbers;
 }
 
-void Simulations::compute_part(std::size_t part, const SimulationProgress& progress) {
-    observe_trials(opened(), plan_.common, parts().at(part), store_, options_of(progress));
+void Simulations::compute_part(std::size_t part, const TrialOptions& options) {
+    observe_trials(opened(), plan_.common, parts().at(part), store_, options);
 }
 
 }  // namespace mcdem::ensemble

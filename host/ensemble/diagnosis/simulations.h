@@ -19,17 +19,6 @@ namespace mcdem::inline ensemble {
 /// Amplitudes by name, of effects and of nuisances: what a fitted simulation has that the scene has not.
 using Amplitudes = std::vector<std::pair<std::string, double>>;
 
-/// An effect or nuisance of the library and its two amplitudes.
-struct ProbeAmplitudes {
-    std::string name;
-    double first = 0, second = 0;
-};
-
-struct SimulationProgress {
-    std::function<void(double fraction)> on_progress = [](double) {};
-    StopWanted stop_wanted = never_stop;
-};
-
 /// Observations are matrices: a row for each simulation, NaN if it failed; a column for each cell of the
 /// grid. Simulations are kept in a folder and never repeated.
 class Simulations {
@@ -39,7 +28,6 @@ public:
     Simulations(DiagnosisPlan plan, const std::filesystem::path& folder, std::string device);
 
     const DiagnosisPlan& plan() const { return plan_; }
-    int packings() const { return static_cast<int>(plan_.library.packings.size()); }
     /// Description of the device.
     std::string device() { return opened().description(); }
     std::string device_name() { return opened().info().name; }
@@ -52,21 +40,19 @@ public:
 
     /// The trials of a library: the baseline, packing after packing; then for each probe and each of its two
     /// amplitudes the paired rows of the baseline again.
-    Eigen::MatrixXd library(const SimulationProgress& progress);
-    std::vector<std::size_t> paired_rows() const;
-    std::vector<ProbeAmplitudes> probes() const;
+    Eigen::MatrixXd library(const TrialOptions& options);
 
-    Eigen::MatrixXd baseline(const SimulationProgress& progress);
+    Eigen::MatrixXd baseline(const TrialOptions& options);
     /// With half the error of positions.
-    Eigen::MatrixXd finer_baseline(const SimulationProgress& progress);
+    Eigen::MatrixXd finer_baseline(const TrialOptions& options);
     /// `runs` of every packing with each of the fits, with the protocol of other_protocols() if given.
     Eigen::MatrixXd fitted(const std::vector<Amplitudes>& fits, int runs, std::optional<std::size_t> protocol,
-                           const SimulationProgress& progress);
+                           const TrialOptions& options);
     /// Why simulations failed until now, by the probe (library) or "" (unchanged scene).
     const std::map<std::string, std::string>& causes_of_failure() const { return causes_; }
 
     /// Stores recordings of the first `runs` of the baseline, or of a fit.
-    void record(const Amplitudes& fit, int runs, const SimulationProgress& progress);
+    void record(const Amplitudes& fit, int runs, const TrialOptions& options);
     /// The first packing's experiment compared with recorded runs of the scene and of a fit.
     PaperMetrics metrics(const Amplitudes& fit, int before, int after);
 
@@ -86,7 +72,7 @@ public:
     /// Parts of the library's simulations, for several processes; those of `device` that are missing.
     std::size_t count_parts();
     std::vector<std::size_t> missing_parts(const std::string& device);
-    void compute_part(std::size_t part, const SimulationProgress& progress);
+    void compute_part(std::size_t part, const TrialOptions& options);
 
 private:
     using Trials = std::vector<Trial>;
@@ -96,7 +82,7 @@ private:
     Trials trials_of(const Amplitudes& fit, int runs) const;
     Trials recorded_trials(const Amplitudes& fit, int runs) const;
     const std::vector<Trials>& parts();
-    Eigen::MatrixXd observe_probes(const Trials& trials, const SimulationProgress& progress);
+    Eigen::MatrixXd observe_probes(const Trials& trials, TrialOptions options);
 
     DiagnosisPlan plan_;
     ObservationStore store_;

@@ -92,8 +92,9 @@ class _Diagnosing:
         self._tell_what_is_left_out()
         evidence = self._gather()
         inference = self._infer(evidence)
-        if self.options.refine > 1 and self._has_gap(inference) and self.simulations.neglected_motion(MAX_SLOWDOWN):
-            self._follow_motion(evidence)
+        has_gap = self._verdict(inference) != Verdict.no_gap
+        if self.options.refine > 1 and has_gap and (motion := self.simulations.neglected_motion(MAX_SLOWDOWN)):
+            self._follow_motion(evidence, motion)
             inference = self._infer(evidence)
         self._confirm(inference)
         if self._verdict(inference) == Verdict.not_converged and self.options.refine > 1:
@@ -140,9 +141,6 @@ class _Diagnosing:
     @staticmethod
     def _verdict(inference: Inference) -> Verdict:
         return inference.builder.decision.verdict
-
-    def _has_gap(self, inference: Inference) -> bool:
-        return self._verdict(inference) != Verdict.no_gap
 
     def _stage(self, name: str) -> Callable[[float], object]:
         return lambda fraction: self.listener.progress(name, fraction)
@@ -210,9 +208,8 @@ class _Diagnosing:
             self.listener.note(note)
         self.hindered += notes
 
-    def _follow_motion(self, evidence: Evidence) -> None:
+    def _follow_motion(self, evidence: Evidence, motion: list[tuple[str, str, float, float]]) -> None:
         """Lets the plate move as that of the experiment. Its speed is then known and no candidate."""
-        motion = self.simulations.neglected_motion(MAX_SLOWDOWN)
         self.refinements += [Refinement(effect="", key=key, was=was, to=to, unit=unit, done=True) for key, unit, was, to in motion]
         settings = ", ".join(f"{key} = {to:.3g}" for key, _, _, to in motion)
         self.listener.note(f"there is a gap, and experiment.toml states how the plate moves: continuing with that motion ({settings})")
