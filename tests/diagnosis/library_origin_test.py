@@ -117,6 +117,12 @@ class Loads(unittest.TestCase):
         with self.assertRaises(InputError):
             at_times_the_load(0.5)
 
+    def test_prescribed_forces_are_not_compared(self):
+        grid = Grid([0.01, 0.02], 0.005, 0.022, [0.1, 0.2], 0.1)
+        forces = [observables()[cell.observable].name == "top_force" for cell in cells_of(grid)]
+        library = Library(grid, np.where(forces, math.nan, np.full((3, len(forces)), 0.5)), [0] * 3)  # not observed under given forces
+        expect_alike_loads(library, library.baseline, "file.json")
+
 
 if __name__ == "__main__":
     unittest.main()
