@@ -15,13 +15,10 @@ FLOORS = {
     "sim": ["scene", "elasticity", "cl", "core"],
     "io": ["scene", "core"],
     "experiment": ["scene", "core"],
-    "metrics": ["core"],
-    "calibrate": ["metrics", "core"],
-    "diagnose": ["metrics", "experiment", "scene", "core"],
-    "ensemble": ["diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
-    "cli": ["ensemble", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
-    "python": ["ensemble", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
-               "core"],
+    "diagnose": ["experiment", "scene", "core"],
+    "ensemble": ["diagnose", "sim", "io", "experiment", "scene", "cl", "core"],
+    "cli": ["ensemble", "diagnose", "sim", "io", "experiment", "scene", "cl", "core"],
+    "python": ["ensemble", "diagnose", "sim", "io", "experiment", "scene", "cl", "core"],
 }
 # Room of the Python package -> the rooms that it may import. All may import the modules that are in no room.
 ROOMS = {
@@ -29,11 +26,14 @@ ROOMS = {
     "importing": [],
     "observe": ["results"],
     "exporting": ["results"],
-    "diagnosis": ["results"],
-    "report": ["diagnosis", "observe", "results"],
+    "calibration": ["observe", "results"],
+    "diagnosis": ["observe", "results"],
+    "convergence": ["diagnosis", "observe", "results"],
+    "report": ["convergence", "diagnosis", "observe", "results"],
     "figures": ["report"],
     "challenge": ["report", "diagnosis", "results"],
-    "commands": ["challenge", "figures", "report", "diagnosis", "observe", "exporting", "importing", "results"],
+    "commands": ["challenge", "figures", "report", "convergence", "diagnosis", "calibration", "observe", "exporting", "importing",
+                 "results"],
 }
 LONGEST_FILE = 400
 LONGEST_FUNCTION = 70

@@ -7,7 +7,8 @@ import pathlib
 import subprocess
 import sys
 
-ROOMS = ("results", "observe", "diagnosis", "report", "challenge", "commands", "checked_json.py", "command.py", "diagnosing.py", "errors.py",
+ROOMS = ("results", "observe", "calibration", "diagnosis", "convergence", "report", "challenge", "commands", "checked_json.py", "command.py",
+         "comparing.py", "diagnosing.py", "errors.py",
          "files.py", "look.py", "manifest.py", "number_text.py", "outputs.py", "parts.py", "program.py", "progress.py")
 
 

@@ -8,15 +8,12 @@
 
 namespace mcdem::inline core {
 
-/// Files that a command writes again when it is run again.
-enum class FileKind { run_table, convergence, calibration, figure, figure_values };
+/// Throws InputError unless the path is free, or holds an empty file or the table of a run. Called before
+/// long work, and again by replace_table.
+void expect_replaceable_table(const std::filesystem::path& file);
 
-/// Throws InputError unless the path is free, or holds an empty file or a file of this kind. Called before
-/// long work, and again by the functions below.
-void expect_replaceable(const std::filesystem::path& file, FileKind kind);
-
-/// replace_file, after expect_replaceable.
-void replace_own(const std::filesystem::path& file, FileKind kind, std::string_view text);
+/// replace_file, after expect_replaceable_table.
+void replace_table(const std::filesystem::path& file, std::string_view text);
 
 /// A folder with the diagnoses of a challenge contains this subfolder.
 inline constexpr const char* answers_folder = "evidence";

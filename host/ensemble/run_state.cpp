@@ -94,7 +94,7 @@ RunIdentity identity_of(const Device& device, const Scene& scene, const std::str
 void expect_room_for_run(const std::filesystem::path& folder) {
     expect_no_experiment(folder);
     expect_no_answers(folder);
-    expect_replaceable(folder / "plate.csv", FileKind::run_table);
+    expect_replaceable_table(folder / "plate.csv");
 }
 
 void expect_scene_of(const std::filesystem::path& folder, const Scene& scene) {

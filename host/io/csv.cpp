@@ -96,7 +96,7 @@ std::string csv_text(const Run& run, const StopWanted& stop_wanted) {
 
 void write_csv(const std::filesystem::path& folder, const StopWanted& stop_wanted) {
     const Run run = read_run(folder, ReadWhat::observables, stop_wanted);
-    replace_own(folder / "plate.csv", FileKind::run_table, csv_text(run, stop_wanted));
+    replace_table(folder / "plate.csv", csv_text(run, stop_wanted));
 }
 
 }  // namespace mcdem::io

@@ -13,8 +13,8 @@ namespace mcdem::inline python {
 void bind_scene(pybind11::module_& module);
 void bind_results(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
-void bind_convergence(pybind11::module_& module);
-void bind_comparison(pybind11::module_& module);
+void bind_batch(pybind11::module_& module);
+void bind_convergence_simulator(pybind11::module_& module);
 void bind_path(pybind11::module_& module);
 void bind_random(pybind11::module_& module);
 void bind_simulations(pybind11::module_& module);
@@ -23,6 +23,11 @@ void bind_diagnosis_tables(pybind11::module_& module);
 
 /// Converts values of scene keys to int, float, bool or str; None for an empty text.
 pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);
+
+/// Values of scene keys as TOML text, by key.
+using KeyValues = std::map<std::string, std::string>;
+/// From a dict of dotted keys. Throws InputError.
+KeyValues key_values(const pybind11::dict& values);
 
 /// A run in Python: shared by arrays and recordings, immutable.
 using SharedRun = std::shared_ptr<Run>;

@@ -59,8 +59,8 @@ PYBIND11_MODULE(_engine, module) {
     mcdem::bind_scene(module);
     mcdem::bind_results(module);
     mcdem::bind_simulation(module);
-    mcdem::bind_convergence(module);
-    mcdem::bind_comparison(module);
+    mcdem::bind_batch(module);
+    mcdem::bind_convergence_simulator(module);
     mcdem::bind_path(module);
     mcdem::bind_random(module);
     mcdem::bind_simulations(module);

@@ -225,6 +225,8 @@ void bind_recording(py::module_& module) {
         .def_property_readonly(
             "parameters", [](const OneRecording& self) { return typed_parameters(self.get().parameters); },
             "Every scene key and its value for this replica; None where the key does not apply.")
+        .def_property_readonly("_parameter_texts",
+                               [](const OneRecording& self) { return self.get().parameters; })
         .def_property_readonly(
             "box",
             [](const OneRecording& self) { return std::pair(self.get().box.size_x, self.get().box.size_y); },

@@ -69,6 +69,14 @@ py::dict typed_parameters(const std::map<std::string, std::string>& parameters) 
     return all;
 }
 
+KeyValues key_values(const py::dict& values) {
+    const py::object text_of = py::module_::import("mcdem.toml").attr("value_text");
+    KeyValues texts;
+    for (const auto& [key, value] : values)
+        texts[key.cast<std::string>()] = text_of(key, value).cast<std::string>();
+    return texts;
+}
+
 void bind_scene(py::module_& module) {
     py::class_<Scene>(
         module, "Scene",

@@ -7,6 +7,7 @@
 #include "core/version.h"
 #include "ensemble/diagnosis/simulations.h"
 #include "python/bindings.h"
+#include "python/grid_dict.h"
 #include "python/watch.h"
 
 namespace mcdem::inline python {
@@ -14,35 +15,6 @@ namespace {
 
 namespace py = pybind11;
 namespace fs = std::filesystem;
-
-py::dict dict_of(const Grid& grid) {
-    py::list holds;
-    for (const HoldScans& hold : grid.holds)
-        holds.append(py::dict(py::arg("begin") = hold.begin, py::arg("first") = hold.first,
-                              py::arg("end") = hold.end, py::arg("keep") = name(hold.keep),
-                              py::arg("phase") = static_cast<int>(hold.phase),
-                              py::arg("displacement") = hold.displacement));
-    return py::dict(py::arg("displacement") = grid.displacement, py::arg("width") = grid.width,
-                    py::arg("stroke") = grid.stroke, py::arg("force") = grid.force,
-                    py::arg("force_width") = grid.force_width, py::arg("holds") = holds);
-}
-
-Grid grid_from(const py::dict& values) {
-    Grid grid;
-    grid.displacement = values["displacement"].cast<std::vector<double>>();
-    grid.width = values["width"].cast<double>();
-    grid.stroke = values["stroke"].cast<double>();
-    grid.force = values["force"].cast<std::vector<double>>();
-    grid.force_width = values["force_width"].cast<double>();
-    for (const py::handle& row : values["holds"]) {
-        const auto hold = row.cast<py::dict>();
-        grid.holds.push_back({hold["begin"].cast<int>(), hold["first"].cast<int>(), hold["end"].cast<int>(),
-                              *parse<Controlled>(hold["keep"].cast<std::string>()),
-                              static_cast<Phase>(hold["phase"].cast<int>()),
-                              hold["displacement"].cast<double>()});
-    }
-    return grid;
-}
 
 PlanOptions plan_options(const std::vector<std::string>& candidates, int replicates, int pairs,
                          std::uint64_t seed, bool recordings) {
@@ -168,10 +140,13 @@ void bind_settings(py::class_<Simulations>& type) {
         .def("other_protocols", &Simulations::other_protocols, py::arg("slower"))
         .def("changed_keys", &Simulations::changed_keys, py::arg("amplitudes"))
         .def(
-            "metrics",
+            "recordings",
             [](Simulations& s, const Amplitudes& fit, int before, int after) {
-                const PaperMetrics metrics = s.metrics(fit, before, after);
-                return py::make_tuple(metrics.values, metrics.top_force);
+                const auto run_of = [](std::vector<Recording> recordings) {
+                    return std::make_shared<Run>(Run{"", "", "", "", "", std::move(recordings)});
+                };
+                return py::make_tuple(run_of({s.plan().experiments.front().recording}),
+                                      run_of(s.recordings({}, before)), run_of(s.recordings(fit, after)));
             },
             py::arg("fit"), py::arg("before"), py::arg("after"));
 }

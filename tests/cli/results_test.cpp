@@ -116,6 +116,7 @@ TEST_F(CliTest, ExportWritesFilesOfGrainsContactsForcesAndWallsPerScan) {
 }
 
 TEST_F(CliTest, CalibrationFindsAndWritesTheGammaOfARun) {
+    NEEDS_PYTHON_MODULE();
     std::ofstream(path("grain.csv")) << "x_m,y_m,z_m,diameter_m\n0.03,0.03,0.01,0.02\n";
     const std::vector<std::string> one_grain{
         "--set", "packing.file=grain.csv", "--set", "contact.model=mc_dem",

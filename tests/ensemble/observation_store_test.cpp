@@ -8,7 +8,6 @@
 
 #include "core/errors.h"
 #include "ensemble/small_scene.h"
-#include "metrics/estimate.h"
 
 namespace mcdem {
 namespace {
@@ -23,7 +22,7 @@ struct Store {
 
 TEST(ObservationStore, FindsStoredObservations) {
     const Store s;
-    const Eigen::VectorXd kept = Eigen::Vector4d(1.0 / 3, not_available, -INFINITY, 1e-300);
+    const Eigen::VectorXd kept = Eigen::Vector4d(1.0 / 3, unknown, -INFINITY, 1e-300);
     EXPECT_FALSE(s.store.find("name"));
     s.store.keep("name", kept);
     const auto found = s.store.find("name");

@@ -58,6 +58,7 @@ class Estimates(unittest.TestCase):
                         if not math.isnan(error)]
             self.assertAlmostEqual(jackknife.estimate(values).standard_error, math.hypot(*expected), 12)
             self.assertEqual(jackknife.estimate(values).count, 5)
+        self.assertEqual(Jackknife("123", [""]).estimate([3, 1, 1, 1]), Estimate(3, 0, 3))  # the value is that without omissions
 
     def test_jackknife_omits_pairs_together(self):
         counts = [len(Jackknife(a, b).omissions) for a, b in (("123", "321"), ("123", "789"), ("1", [""]))]
@@ -88,7 +89,8 @@ class Settings(unittest.TestCase):
         named[3] = replace(named[3], label="packing 7 #4")  # no longer distinct
         self.assertEqual(labels(named), ["gamma=1", "gamma=1.125"])
         self.assertEqual(labels(run.recordings), ["mc_dem"])
-        self.assertEqual(labels([replace(one, parameters={}) for one in run.recordings]), ["synthetic"])
+        unknown = [replace(one, parameters={}) for one in run.recordings]
+        self.assertEqual((labels(unknown), model_of(unknown)), (["synthetic"], None))
 
     def test_discard(self):
         for text, number in (("5", 5), ("-3", 0), ("", 0), ("5x", 5), ("x5", 0), ("99999999999", 0)):
@@ -116,9 +118,10 @@ class Levels(unittest.TestCase):
 
     def test_tolerance(self):
         made = recording(cycles=2, levels=3)
-        for way, count in ((0.04e-3, 6), (0.06e-3, 12)):
+        steps = np.array([10, 20, 30, 0, 10, 20]) / 1e3
+        for way, expected in ((0.04e-3, steps), (0.06e-3, np.add.outer(steps, [-0.06e-3, 0.06e-3]).ravel())):
             moved = changed(made, plate_z=made.scans.plate_z + np.where(made.scans.cycle == 0, way, -way))
-            self.assertEqual(len(group_levels([moved])), count)
+            np.testing.assert_allclose([level.displacement for level in group_levels([moved])], expected, atol=1e-12)
         self.assertEqual(len(group_levels([recording(cycles=2, levels=1000)])), 2000)  # 0.03 mm apart, recorded in motion
         unknown = recording(levels=2)
         unknown.scans.plate_z[0] = NAN

@@ -1,29 +1,28 @@
-"""Table and figure of a convergence study show the numbers of its convergence.json."""
+"""Table and figure of a convergence study show its numbers."""
 import dataclasses
-import json
-import pathlib
-import tempfile
 import unittest
 
-from mcdem.errors import InputError
-from mcdem.report.convergence import (CauseErrors, CellError, Convergence, Limits, convergence_figure_values, read_convergence,
-                                      table_of_convergence)
+from mcdem.convergence.convergence_types import CauseErrors, CellError, Convergence, Limits
+from mcdem.report.convergence import convergence_figure_values, table_of_convergence
 from mcdem.report.effect_names import OBSERVABLES
 from mcdem.report.text_table import to_text
 
 
 def example():
     """Two causes: the first makes the top force 2 % too large while loading at 10 mm; everything else is within limits."""
+    def cell(name, error, standard_error, beyond=False):
+        limit = {"top_force": 0.005, "mean_force": 0.005}.get(name, 0.05)
+        return CellError(name, "load", 10.0, 1.0, 0.1, error, standard_error, True, limit, beyond)
+
     def cells(error, standard_error):
-        limits = {"top_force": 0.005, "mean_force": 0.005}
-        return [CellError(name, error, standard_error, limits.get(name, 0.05), False) for name in OBSERVABLES for _ in range(4)]
+        return [cell(name, error, standard_error) for name in OBSERVABLES for _ in range(4)]
 
     speed = cells(0.001, 0.0005)
-    speed[0] = CellError("top_force", 0.02, 0.002, 0.005, True)
+    speed[0] = cell("top_force", 0.02, 0.002, True)
     margin = cells(-0.0005, 0.0005)
-    margin[2] = CellError("top_force", -0.0009, 0.0005, 0.005, False)  # the largest of this cause
-    return Convergence(32, "jittered copies of one packing", ("Not converged.",), Limits(0.005, 0.5),
-                       (CauseErrors("plate speed", tuple(speed)), CauseErrors("list margin", tuple(margin))))
+    margin[2] = cell("top_force", -0.0009, 0.0005)  # the largest of this cause
+    return Convergence("small", 32, "jittered copies of one packing", ("Not converged.",), Limits(0.005, 0.5),
+                       (CauseErrors("plate speed", tuple(speed)), CauseErrors("list margin", tuple(margin))), 1.0)
 
 
 class ConvergenceTest(unittest.TestCase):
@@ -46,16 +45,6 @@ class ConvergenceTest(unittest.TestCase):
         made = dataclasses.replace(example(), causes=(speed, CauseErrors("list margin", margin.errors[:4])))
         self.assertEqual(table_of_convergence(made).rows[1][2], "-")
         self.assertIsNone(convergence_figure_values(made)["rows"][1]["errors"][1])
-
-    def test_files_are_read_and_others_refused(self):
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder, "convergence.json")
-            file.write_text(json.dumps(dataclasses.asdict(example())))
-            self.assertEqual(read_convergence(file), example())
-            for other in ("", "[]", "{}", '{"limits": 3}', "\0"):
-                file.write_text(other)
-                with self.assertRaisesRegex(InputError, "convergence.json: must be a convergence.json of mcdem"):
-                    read_convergence(file)
 
 
 if __name__ == "__main__":

@@ -16,8 +16,9 @@ import written
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "host/python"))
 from mcdem.commands.command_line import run_command  # noqa: E402
-from mcdem.commands.sources import chosen_setting, load_reference, load_runs, names_of  # noqa: E402
+from mcdem.commands.sources import load_runs, names_of  # noqa: E402
 from mcdem.errors import InputError  # noqa: E402
+from mcdem.observe.reference import chosen_setting, load_reference  # noqa: E402
 from mcdem.results import Wall, read_run  # noqa: E402
 from mcdem.results.experiment import read_experiment  # noqa: E402
 
@@ -115,8 +116,8 @@ class Experiments(unittest.TestCase):
     def test_references(self):
         written.write_run(self.folder / "run.h5", replicas=2)
         reference = load_reference([str(self.lab), str(self.folder / "run.h5")], discard=1)
-        self.assertEqual(reference.setting.label, "by hand, mc_dem")
-        self.assertEqual([one.parameters.get("protocol.discard") for one in reference.setting.replicas], ["1", None, None])
+        self.assertEqual(reference.label, "by hand, mc_dem")
+        self.assertEqual([one.parameters.get("protocol.discard") for one in reference.replicas], ["1", None, None])
         with self.assertRaisesRegex(InputError, "--setting: must be one of here's: mc_dem; got nope"):
             chosen_setting(read_run(self.folder), "nope", "here", "--setting")
 

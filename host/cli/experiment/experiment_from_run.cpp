@@ -14,10 +14,10 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "core/make_folder.h"
+#include "core/parameters.h"
 #include "diagnose/effects.h"
 #include "experiment/instrument.h"
 #include "io/results.h"
-#include "metrics/replicas.h"
 #include "scene/packing/packing_fields.h"
 #include "scene/programme/programme_text.h"
 
@@ -111,7 +111,8 @@ void expect_all_scans(const Recording& truth) {
 }
 
 void warn_of_start(const Recording& truth) {
-    if (follows_programme(truth) && !is_cell(truth.box)) expect_all_scans(truth);  // cells are refused later
+    if (has_programme(truth.parameters) && !is_cell(truth.box))
+        expect_all_scans(truth);  // cells are refused later
     if (!truth.species_names.empty())
         throw InputError(
             "the run must be one of grains of one material, got one of [[species]]: experiments state one "

@@ -20,7 +20,6 @@
 #include "io/checkpoint.h"
 #include "io/result_folder.h"
 #include "io/results.h"
-#include "metrics/replicas.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -88,7 +87,7 @@ void warn_of_no_contact(const Run& run) {
 /// The plate of such a replica stands until the packing settles.
 bool waits_for_rest(const Recording& recording) {
     return value_of(recording.parameters, "protocol.stop_at_scans") == "true" &&
-           value_of(recording.parameters, "protocol.pause") == "0" && !follows_programme(recording);
+           value_of(recording.parameters, "protocol.pause") == "0" && !has_programme(recording.parameters);
 }
 
 void warn_of_unsettled(const Run& run) {

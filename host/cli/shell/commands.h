@@ -15,8 +15,6 @@ void add_devices(CLI::App& app, int& exit_code);
 void add_validate(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_distribute(CLI::App& app, int& exit_code);
-void add_calibrate(CLI::App& app, int& exit_code);
-void add_converge(CLI::App& app, int& exit_code);
 void add_challenge(CLI::App& app, int& exit_code);
 /// Those of the program, or of its command `challenge`.
 void add_python_commands(CLI::App& app, int& exit_code);
@@ -27,8 +25,7 @@ void add_completion(CLI::App& app, int& exit_code);
 /// unread.
 bool is_python_command(const std::vector<std::string>& words);
 
-/// Checks of finite numbers. CLI11's own checks print the largest double with its 309 digits.
+/// Checks finite numbers. CLI11's own check prints the largest double with its 309 digits.
 const CLI::Validator& at_least_zero();
-const CLI::Validator& above_zero();
 
 }  // namespace mcdem::cli

@@ -26,16 +26,6 @@ int columns(std::FILE* out) {
 
 }  // namespace
 
-void StageProgress::show(const std::string& stage, double fraction) {
-    if (stage != stage_) {
-        progress_.reset();
-        stage_ = stage;
-        spdlog::info("{}", stage);
-        progress_.emplace(stderr, progress_style(stderr));
-    }
-    progress_->show(fraction);
-}
-
 std::string duration_text(double seconds) {
     const long s = std::lround(seconds);
     if (s < 60) return fmt::format("{} s", s);

@@ -44,16 +44,6 @@ private:
     bool bar_is_there_ = false;
 };
 
-/// Progress of work in several named stages, each with its own bar on standard error.
-class StageProgress {
-public:
-    void show(const std::string& stage, double fraction);
-
-private:
-    std::string stage_;
-    std::optional<Progress> progress_;
-};
-
 /// "42 s", "3 min 20 s", "2 h 05 min".
 std::string duration_text(double seconds);
 

@@ -23,6 +23,10 @@ const std::array python_commands{
     PythonCommand{"", "diagnose",
                   "Find where a simulation and an experiment differ, and which effect is consistent with the "
                   "difference"},
+    PythonCommand{"", "calibrate",
+                  "Fit gamma of MC-DEM, or E of another model, to the top force of an experiment"},
+    PythonCommand{"", "converge",
+                  "Measure how plate speed, inertia, time step and settling change a scene's results"},
     PythonCommand{"challenge", "make",
                   "Simulate experiments with hidden effects, and write the truth to a separate file"},
     PythonCommand{"challenge", "run", "Diagnose every experiment of a challenge"},

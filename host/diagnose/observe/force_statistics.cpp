@@ -8,14 +8,13 @@
 
 #include "core/container.h"
 #include "core/least_squares.h"
-#include "metrics/estimate.h"
 
 namespace mcdem::inline diagnose {
 namespace {
 
 /// Quantile: the value below which a fraction `share` of the values lies.
 double quantile(std::vector<double>& values, double share) {
-    if (values.empty()) return not_available;
+    if (values.empty()) return unknown;
     const auto at =
         values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
@@ -25,13 +24,13 @@ double quantile(std::vector<double>& values, double share) {
 double mean(std::span<const double> values) {
     double sum = 0;
     for (const double value : values) sum += value;
-    return values.empty() ? not_available : sum / static_cast<double>(values.size());
+    return values.empty() ? unknown : sum / static_cast<double>(values.size());
 }
 
 double part(std::span<const double> values, double low, double high) {
     const auto inside =
         std::ranges::count_if(values, [&](double value) { return value >= low && value < high; });
-    return values.empty() ? not_available : static_cast<double>(inside) / static_cast<double>(values.size());
+    return values.empty() ? unknown : static_cast<double>(inside) / static_cast<double>(values.size());
 }
 
 /// Slope of y over x.
@@ -42,7 +41,7 @@ double slope(std::span<const double> x, std::span<const double> y) {
         xx += (x[k] - mean_x) * (x[k] - mean_x);
         xy += (x[k] - mean_x) * (y[k] - mean_y);
     }
-    return xx > 0 ? xy / xx : not_available;
+    return xx > 0 ? xy / xx : unknown;
 }
 
 }  // namespace
@@ -70,8 +69,7 @@ std::array<double, 5> wall_loads(const Recording& recording, const Scan& scan) {
         }
     }
     const double top = scan.top_force();
-    if (!(top > 0) || !(plate > 0))
-        return {not_available, not_available, not_available, not_available, not_available};
+    if (!(top > 0) || !(plate > 0)) return {unknown, unknown, unknown, unknown, unknown};
     return {floor / top, sides / top, plate / top, couple_x / plate, couple_y / plate};
 }
 
@@ -111,7 +109,7 @@ double section_load(const Scan& scan) {
         moment += contact.force.z() * (height(contact.grain) - from);
     }
     const double top = scan.top_force();
-    return top > 0 ? moment / (scan.plate_z * top) : not_available;
+    return top > 0 ? moment / (scan.plate_z * top) : unknown;
 }
 
 namespace {
@@ -120,7 +118,7 @@ namespace {
 /// diameter.
 double non_affine_displacement(const Recording& recording, const Scan& scan) {
     const std::vector<Vec3>& before = recording.scans.front().position;
-    if (before.size() != scan.position.size()) return not_available;
+    if (before.size() != scan.position.size()) return unknown;
     Eigen::Matrix4d products = Eigen::Matrix4d::Zero();
     Eigen::Matrix<double, 4, 3> right = Eigen::Matrix<double, 4, 3>::Zero();
     for (std::size_t i = 0; i < before.size(); ++i) {
@@ -175,7 +173,7 @@ double torque_imbalance(const Recording& recording, std::span<const ContactResid
         left += torque[grain].norm();
         all += size[grain];
     }
-    return all > 0 ? left / all : not_available;
+    return all > 0 ? left / all : unknown;
 }
 
 }  // namespace
@@ -191,7 +189,7 @@ std::array<double, 6> friction_numbers(const Recording& recording, const Scan&,
         if (c.normal_force > 0.3 * pushes)
             (is_wall(c.partner) ? walls : grains).push_back(c.tangential / c.normal_force);
     const double mu = material.friction;
-    const double sliding = mu > 0 ? part(grains, 0.8 * mu, 1.2 * mu) : not_available;
+    const double sliding = mu > 0 ? part(grains, 0.8 * mu, 1.2 * mu) : unknown;
     const double grain_mean = mean(grains), wall_mean = mean(walls);
     return {grain_mean, quantile(grains, 0.8), sliding,
             wall_mean,  quantile(walls, 0.8),  torque_imbalance(recording, contacts)};

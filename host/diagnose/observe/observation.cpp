@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metrics/estimate.h"
 #include "scene/programme/programme_text.h"
 
 namespace mcdem::inline diagnose {
@@ -34,8 +33,8 @@ public:
     double at_middle(Eigen::Index q) const {
         const double n = sums_(q, 0), x = sums_(q, 1), xx = sums_(q, 2), y = sums_(q, 3), xy = sums_(q, 4);
         const double determinant = n * xx - x * x;
-        if (!(n > 0.3)) return not_available;
-        if (!(determinant > 1e-3 * n * n)) return std::abs(x / n) < 0.1 ? y / n : not_available;
+        if (!(n > 0.3)) return unknown;
+        if (!(determinant > 1e-3 * n * n)) return std::abs(x / n) < 0.1 ? y / n : unknown;
         return (xx * y - x * xy) / determinant;
     }
 
@@ -137,7 +136,7 @@ Eigen::VectorXd stroke_observables(const Recording& recording, const Scan& scan,
                                    const ReferenceMaterial& material) {
     Eigen::VectorXd values = scan_observables(recording, scan, material);
     if (!grid.force.empty()) {
-        values[0] = not_available;  // the force on the plate
+        values[0] = unknown;  // the force on the plate
         values[index_of(OfProgramme::displacement)] = recording.displacement(scan) / grid.stroke;
     }
     return values;
@@ -163,7 +162,7 @@ void add_holds(const Recording& recording, const Grid& grid, int discard, std::v
         const Scan& end = recording.scans[hold.end];
         if (end.cycle < discard) continue;
         Eigen::VectorXd values =
-            Eigen::VectorXd::Constant(static_cast<Eigen::Index>(observables().size()), not_available);
+            Eigen::VectorXd::Constant(static_cast<Eigen::Index>(observables().size()), unknown);
         if (hold.keep == Controlled::force)
             values[index_of(OfProgramme::creep)] = (begin.plate_z - end.plate_z) / grid.stroke;
         else if (begin.top_force() > 0 && end.top_force() > 0)

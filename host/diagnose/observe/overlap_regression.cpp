@@ -7,7 +7,6 @@
 
 #include "core/container.h"
 #include "core/least_squares.h"
-#include "metrics/estimate.h"
 #include "scene/packing/cell_pairs.h"
 
 namespace mcdem::inline diagnose {
@@ -30,7 +29,7 @@ public:
     }
     /// NaN with fewer than five rows per term.
     Terms<terms> solve() const {
-        if (rows_ < 5 * terms) return Terms<terms>::Constant(not_available);
+        if (rows_ < 5 * terms) return Terms<terms>::Constant(unknown);
         return least_squares(products_, right_);
     }
 
@@ -70,7 +69,7 @@ std::array<double, 2> shared_remainders(std::size_t grains, std::span<const Cont
         scaled += s.q * s.q - s.qq;
         pairs += s.n * (s.n - 1);
     }
-    if (!(pairs > 0)) return {not_available, not_available};
+    if (!(pairs > 0)) return {unknown, unknown};
     const auto signed_root = [](double x) { return std::copysign(std::sqrt(std::abs(x)), x); };
     return {signed_root(products / pairs), signed_root(scaled / pairs)};
 }
@@ -80,7 +79,7 @@ double root_mean_square(const std::vector<double>& values) {
     int n = 0;
     for (const double value : values)
         if (std::isfinite(value)) sum += value * value, ++n;
-    return n ? std::sqrt(sum / n) : not_available;
+    return n ? std::sqrt(sum / n) : unknown;
 }
 
 }  // namespace
@@ -119,7 +118,7 @@ std::array<double, 7> grain_overlaps(const Recording& recording, std::span<const
         ++number;
     }
     const Terms<4> fit = regression.solve();
-    std::vector<double> remainder(contacts.size(), not_available);
+    std::vector<double> remainder(contacts.size(), unknown);
     for (std::size_t k = 0; k < contacts.size(); ++k)
         if (!is_wall(contacts[k].partner))
             remainder[k] = contacts[k].residual() - fit.dot(grain_terms(contacts[k]));

@@ -5,7 +5,6 @@
 
 #include "diagnose/observe/force_statistics.h"
 #include "diagnose/observe/overlap_regression.h"
-#include "metrics/estimate.h"
 
 namespace mcdem::inline diagnose {
 namespace {
@@ -71,7 +70,7 @@ public:
     const Eigen::VectorXd& done() const { return row_; }
 
 private:
-    Eigen::VectorXd row_ = Eigen::VectorXd::Constant(count, not_available);
+    Eigen::VectorXd row_ = Eigen::VectorXd::Constant(count, unknown);
     Eigen::Index next_ = 0;
 };
 
@@ -88,7 +87,7 @@ Eigen::VectorXd scan_observables(const Recording& recording, const Scan& scan,
                                  const ReferenceMaterial& material) {
     Row row;
     const double top = scan.top_force();
-    row.add(std::array{top > 0 ? std::log(top) : not_available});
+    row.add(std::array{top > 0 ? std::log(top) : unknown});
     if (scan.contacts.size() < min_contacts) return row.done();
     row.add(wall_loads(recording, scan));
     row.add(force_distribution_numbers(recording, scan, material));

@@ -11,7 +11,6 @@
 
 #include "core/in_parallel.h"
 #include "core/sha256.h"
-#include "metrics/estimate.h"
 #include "scene/packing/make_packing.h"
 #include "scene/packing/neighbour_slots.h"
 #include "scene/programme/programme_text.h"
@@ -113,7 +112,7 @@ public:
           names_(trials.size()),
           result_(Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(trials.size()),
                                             static_cast<Eigen::Index>(cells_of(common.grid).size()),
-                                            not_available)) {}
+                                            unknown)) {}
 
     Eigen::MatrixXd all() {
         for (std::size_t t = 0; t < trials_.size(); ++t) {

@@ -112,12 +112,8 @@ void Simulations::record(const Amplitudes& fit, int runs, const TrialOptions& op
     observe_trials(opened(), plan_.common, recorded_trials(fit, runs), store_, options);
 }
 
-PaperMetrics Simulations::metrics(const Amplitudes& fit, int before, int after) {
-    const auto recordings = [&](const Amplitudes& amplitudes, int runs) {
-        return kept_recordings(opened(), plan_.common, recorded_trials(amplitudes, runs), store_);
-    };
-    return paper_metrics(plan_.experiments.front().recording,
-                         {recordings({}, before), recordings(fit, after)});
+std::vector<Recording> Simulations::recordings(const Amplitudes& fit, int runs) {
+    return kept_recordings(opened(), plan_.common, recorded_trials(fit, runs), store_);
 }
 
 SettingChange Simulations::setting(const std::string& effect) {

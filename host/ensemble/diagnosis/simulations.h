@@ -11,7 +11,6 @@
 
 #include "ensemble/diagnosis/diagnosis_plan.h"
 #include "ensemble/diagnosis/other_protocols.h"
-#include "ensemble/diagnosis/paper_metrics.h"
 #include "ensemble/diagnosis/plate_motion.h"
 
 namespace mcdem::inline ensemble {
@@ -53,8 +52,8 @@ public:
 
     /// Stores recordings of the first `runs` of the baseline, or of a fit.
     void record(const Amplitudes& fit, int runs, const TrialOptions& options);
-    /// The first packing's experiment compared with recorded runs of the scene and of a fit.
-    PaperMetrics metrics(const Amplitudes& fit, int before, int after);
+    /// Those that `record` has stored.
+    std::vector<Recording> recordings(const Amplitudes& fit, int runs);
 
     /// The setting that a numerical effect lowers, of several together the one to recommend; its values are
     /// the present one twice.

@@ -9,7 +9,8 @@ def __getattr__(name):
     """Loads the compiled module when a name needs it, because commands written in Python do not."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    home = {"export": ".command", "report": ".command", "diagnose": ".diagnosing"}.get(name, "._engine")
+    home = {"export": ".command", "report": ".command", "calibrate": ".calibration.calibrate", "compare": ".comparing",
+            "converge": ".convergence.converge", "diagnose": ".diagnosing"}.get(name, "._engine")
     value = globals()[name] = getattr(importlib.import_module(home, __name__), name)
     return value
 

@@ -1,7 +1,10 @@
 # The compiled module (host/python): what the package itself uses. `import mcdem` gives what users need (__init__.pyi).
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .results.recording import Floats
 
@@ -11,9 +14,52 @@ Amplitudes = Sequence[tuple[str, float]]  # of effects and nuisances by name
 Change = tuple[str, str, float, float]  # of a key of the scene: key, unit, from, to
 Progress = Callable[[float], object] | None  # is told the fraction that is done
 
+KeyValue = str | float | bool | Sequence[float]
+
 class Scene:
     name: str
     text: str
+    labels: list[str]
+    parameters: list[dict[str, int | float | str | None]]  # by replica
+    def __len__(self) -> int: ...
+    @staticmethod
+    def read(file: Path, *, set: Mapping[str, Any] = ...) -> Scene: ...
+    @staticmethod
+    def parse(text: str, *, set: Mapping[str, Any] = ...) -> Scene: ...
+
+class Failure:
+    step: int
+    grain: int
+    cause: str
+
+class Recording:
+    label: str
+    _parameter_texts: dict[str, str]
+    box: tuple[float, float]
+    plate_start: float
+    container: str
+    failure: Failure | None
+    diameter: Floats
+    species: NDArray[np.int32]
+    species_names: list[str]
+    scans: NDArray[np.void]
+    wall_force: Floats
+    strain: Floats
+    stress: Floats
+    fabric: Floats
+    def positions(self, scan: int) -> Floats: ...
+    def rotations(self, scan: int) -> Floats: ...
+    def contacts(self, scan: int) -> NDArray[np.void]: ...
+    def __len__(self) -> int: ...
+
+class Run:
+    name: str
+    scene: str
+    program: str
+    device: str
+    precision: str
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[Recording]: ...
 
 def scene_of_options(file: str, overrides: Sequence[str]) -> tuple[Scene, list[str]]: ...
 def manifest_of(scene: Scene) -> dict[str, str]: ...
@@ -53,7 +99,7 @@ class Simulations:
     def finer_baseline(self, progress: Progress = None) -> Floats: ...
     def fitted(self, fits: Sequence[Amplitudes], runs: int, protocol: int | None = None, progress: Progress = None) -> Floats: ...
     def record(self, fit: Amplitudes, runs: int, progress: Progress = None) -> None: ...
-    def metrics(self, fit: Amplitudes, before: int, after: int) -> tuple[list[tuple[str, tuple[float, float]]], list[Sequence[float]]]: ...
+    def recordings(self, fit: Amplitudes, before: int, after: int) -> tuple[Run, Run, Run]: ...  # experiment, scene, scene with the fit
     def setting(self, effect: str) -> Change: ...
     def refine(self, effect: str, factor: float) -> None: ...
     def neglected_motion(self, max_slowdown: float) -> list[Change]: ...
@@ -63,6 +109,25 @@ class Simulations:
     def count_parts(self) -> int: ...
     def missing_parts(self, device: str) -> list[int]: ...
     def compute_part(self, part: int, progress: Progress = None) -> None: ...
+
+class Batch:
+    """The packings of a scene, one for each of its replicas, and simulations of variants of the scene on them (host/python/batch_class.cpp)."""
+
+    packings: int  # their number
+    device_name: str
+    def __init__(self, scene: Scene, device: str) -> None: ...
+    def simulate(self, changes: Sequence[Mapping[str, KeyValue]], scans: int, progress: Progress = None) -> Run:
+        """All replicas with each of `changes` of their keys, in this order, until every one has `scans` scans or has failed."""
+
+class ConvergenceSimulator:
+    """Simulations of a scene's first replica with changed numerics (host/ensemble/diagnosis/convergence_simulator.h)."""
+
+    device_name: str
+    draws_packings: bool  # whether there are other packings of the kind
+    def __init__(self, scene: Scene, folder: Path, *, replicas: int, jitter: float, seed: int, device: str) -> None: ...
+    def find_grid(self, progress: Progress = None) -> dict[str, Any]: ...
+    def observe(self, changes: Mapping[str, KeyValue], progress: Progress = None) -> Floats: ...
+    def draw_packings(self) -> None: ...
 
 class CaseSimulator:
     """Simulates experiments with hidden effects (host/ensemble/diagnosis/case_simulator.h).

@@ -1,14 +1,13 @@
 """mcdem.diagnose: a diagnosis for users of Python."""
 import os
 import pathlib
-import sys
-import warnings
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from .command import folders
 from .errors import InputError
 from .look import Path
+from .warn import warn_user
 
 if TYPE_CHECKING:
     from ._engine import Scene
@@ -64,17 +63,9 @@ def _write(scene: "Scene", experiments: list[str], out: pathlib.Path, options: "
                 progress(stage, fraction)
 
         def note(self, text: str) -> None:
-            warnings.warn(text, RuntimeWarning, stacklevel=_levels_up_to_the_user())
+            warn_user(text)
 
     caller = Caller()
     simulations = make_simulations(scene, experiments, os.path.join(out, "simulations"), options, device, "experiment", caller)
     diagnosis = diagnose(scene, simulations, options, caller)
     replace_own(out / "diagnosis.json", DIAGNOSIS, diagnosis_json(diagnosis).encode())
-
-
-def _levels_up_to_the_user() -> int:
-    """From the caller of this function: for a warning that names the user's line."""
-    level, frame = 1, sys._getframe(1)
-    while frame.f_back and frame.f_globals.get("__name__", "").startswith(f"{__package__}."):
-        level, frame = level + 1, frame.f_back
-    return level

@@ -30,6 +30,8 @@ class Kind:
 PAGE = Kind("a page of mcdem", b"<!doctype html>", b'<meta name="generator" content="mcdem">')
 FIGURE = Kind("a figure of mcdem", b"", b"mcdem figure", 1 << 24)  # a PDF names its producer at the end
 FIGURE_VALUES = Kind("the values of figures", b'{\n "mcdem_figures"')
+CALIBRATION = Kind("a calibration", b"{\n", b'"target_top_force_N"')
+CONVERGENCE = Kind("a table of convergence", b"{\n", b'"deviations"')
 DIAGNOSIS = Kind("a diagnosis", b"{\n", b'"p_omnibus"')
 
 TEMPORARY = re.compile(r"(.+)\.[0-9a-f]{16}\.tmp", re.DOTALL)  # files.new_file and host/core/atomic_file.cpp

@@ -15,6 +15,11 @@ def toml_value(value):
     return json.dumps(value, ensure_ascii=False, separators=(", ", " = ")).replace("\x7f", "\\u007f")
 
 
+def value_text(key, value):
+    """The value of a key as TOML. Raises InputError."""
+    return toml_value(_plain(value, key))
+
+
 def assignments(values):
     """`key = value` for each entry of nested tables, with dotted keys: lines of a scene, or overrides. Raises InputError."""
     try:
@@ -29,7 +34,7 @@ def _assignments(table, inside):
         if isinstance(value, Mapping) and value:
             yield from _assignments(value, name + ".")
         else:
-            yield f"{name} = {toml_value(_plain(value, name))}"
+            yield f"{name} = {value_text(name, value)}"
 
 
 def _key_text(key):

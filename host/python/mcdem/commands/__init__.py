@@ -10,6 +10,8 @@ COMMANDS = {
     "figures": "Draw the figures of runs (top force, force distribution, Z, scaling law; others for programmes) or of a diagnosis",
     "report": "Write an HTML page of runs and diagnoses: charts, packings in 3D, tables",
     "diagnose": "Find where a simulation and an experiment differ, and which effect is consistent with the difference",
+    "calibrate": "Fit gamma of MC-DEM, or E of another model, to the top force of an experiment",
+    "converge": "Measure how plate speed, inertia, time step and settling change a scene's results",
     "challenge make": "Simulate experiments with hidden effects, and write the truth to a separate file",
     "challenge run": "Diagnose every experiment of a challenge",
     "challenge score": "Compare the diagnoses with the truth",

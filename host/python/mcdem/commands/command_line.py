@@ -50,6 +50,17 @@ def at_least_zero(text: str) -> float:
     return value
 
 
+def above_zero(text: str) -> float:
+    """A finite number > 0."""
+    try:
+        value = at_least_zero(text)
+    except argparse.ArgumentTypeError:
+        value = 0.0
+    if not value > 0:
+        raise argparse.ArgumentTypeError(f"must be a number > 0, got {text}")
+    return value
+
+
 def whole_at_least_zero(text: str) -> int:
     """A whole number >= 0."""
     value = at_least_zero(text)

@@ -4,12 +4,12 @@ import contextlib
 from collections.abc import Sequence
 
 from ..observe.compare import Comparison, compare
+from ..observe.reference import load_reference
 from ..observe.replicas import Setting
 from ..report.run_tables import table_of_comparisons
 from ..report.text_table import to_text
 from .command_line import at_least_zero, output_path
-from .sources import (add_figure_options, add_reference_options, add_runs_option, figure_options, load_reference, load_runs,
-                      print_figures)
+from .sources import add_figure_options, add_reference_options, add_runs_option, figure_options, load_runs, print_figures
 
 EPILOG = """\
 Rtop: top force at maximum compression over the reference's. errf: RMS error of the top force.
@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    reference = load_reference(options.against, options.setting, options.discard, contacts=True).setting
+    reference = load_reference(options.against, options.setting, options.discard, contacts=True)
     settings = load_runs(options.RUN, contacts=True).settings
     with contextlib.ExitStack() as stack:
         if options.out:

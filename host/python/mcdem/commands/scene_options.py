@@ -19,6 +19,11 @@ def add_scene_options(parser: argparse.ArgumentParser, name: str = "SCENE",
                         help="Override a scene key; may be repeated")
 
 
+def add_device_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--device", metavar="DEVICE", default="",
+                        help="Number or part of the name of a device, as listed by `mcdem devices`")
+
+
 def read_scene(options: argparse.Namespace) -> "Scene":
     """Raises InputError, RunError."""
     from .. import _engine

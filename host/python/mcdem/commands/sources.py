@@ -5,14 +5,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from ..errors import InputError, RunError
-from ..observe.replicas import Setting, group_by_setting, model_of
-from ..results import ContactModel, Recording, Run, read_run
-from ..results.folder import is_there
+from ..errors import RunError
 from .command_line import at_least_zero, whole_at_least_zero
 
 if TYPE_CHECKING:
+    from ..observe.replicas import Setting
     from ..report.figure_data import FigureOptions
+    from ..results import Run
 
 
 def add_runs_option(parser: argparse.ArgumentParser) -> None:
@@ -55,8 +54,8 @@ def print_figures(figures: Iterable[str | os.PathLike[str]], out: str) -> None:
 class LoadedRuns:
     """Several runs and their settings."""
 
-    runs: list[Run]
-    settings: list[Setting]
+    runs: "list[Run]"
+    settings: "list[Setting]"
 
 
 def load_runs(paths: Sequence[str], contacts: bool = False, first_positions: bool = False) -> LoadedRuns:
@@ -65,6 +64,8 @@ def load_runs(paths: Sequence[str], contacts: bool = False, first_positions: boo
     `first_positions`: reads positions of the first replica of each setting. If there are several runs, the label of every setting
     begins with that of its run. Raises InputError, RunError.
     """
+    from ..observe.replicas import group_by_setting
+    from ..results import read_run
     runs = [read_run(path, contacts=contacts, positions=_first_replicas(path) if first_positions else False) for path in paths]
     prefixes = [name + ": " for name in names_of(paths)] if len(paths) > 1 else [""]
     return LoadedRuns(runs, [replace(setting, label=prefix + setting.label)
@@ -73,6 +74,8 @@ def load_runs(paths: Sequence[str], contacts: bool = False, first_positions: boo
 
 def _first_replicas(path: str) -> list[int]:
     """The number of the first replica of each setting."""
+    from ..observe.replicas import group_by_setting
+    from ..results import read_run
     run = read_run(path)
     return [run.recordings.index(setting.replicas[0]) for setting in group_by_setting(run)]
 
@@ -89,52 +92,7 @@ def _short_name(path: str) -> str:
     return os.path.basename(os.path.dirname(whole) if os.path.basename(whole) == "run.h5" else whole)
 
 
-@dataclass(frozen=True)
-class LoadedReference:
-    """All replicas of the reference as one setting for comparisons."""
-
-    runs: list[Run]
-    setting: Setting
-
-
-def load_reference(paths: Sequence[str], setting: str = "", discard: int = 0, contacts: bool = False) -> LoadedReference:
-    """Experiment folders, result folders or files. Metrics ignore the first `discard` cycles of an experiment.
-
-    `setting`: of a run with several; default: mc_dem, if it exists. Raises InputError, RunError.
-    """
-    runs, measured, settings = list[Run](), list[bool](), list[Setting]()
-    for path in paths:
-        measured.append(is_there(os.path.join(path, "experiment.toml")))
-        if measured[-1]:
-            from ..results.experiment import read_experiment
-            recording = read_experiment(path)
-            recording = replace(recording, parameters=recording.parameters | {"protocol.discard": str(discard)})
-            runs.append(Run(recording.label, "", "", "", "", (recording,)))
-        else:
-            runs.append(read_run(path, contacts=contacts))
-    for path, run, is_measured in zip(paths, runs, measured, strict=True):
-        settings.append(Setting(run.name, run.recordings) if is_measured else chosen_setting(run, setting, path, "--setting"))
-    replicas: list[Recording] = [replica for one in settings for replica in one.replicas]
-    return LoadedReference(runs, Setting(", ".join(one.label for one in settings), tuple(replicas)))
-
-
-def reference_of(options: argparse.Namespace) -> Setting | None:
+def reference_of(options: argparse.Namespace) -> "Setting | None":
     """What --against names, with contacts."""
-    return load_reference(options.against, options.setting, options.discard, contacts=True).setting if options.against else None
-
-
-def chosen_setting(run: Run, label: str, where: str, option: str) -> Setting:
-    """The setting with this label; empty: the only one, or that of mc_dem. Raises InputError, which names `where` and `option`."""
-    settings = group_by_setting(run)
-    known = ", ".join(setting.label for setting in settings)
-    for setting in settings:
-        if setting.label == label:
-            return setting
-    if label:
-        raise InputError(f"{option}: must be one of {where}'s: {known or 'it has one, without a label'}; got {label}")
-    if len(settings) == 1:
-        return settings[0]
-    for setting in settings:
-        if model_of(setting.replicas) == ContactModel.mc_dem:
-            return setting
-    raise InputError(f"{where}: holds several settings; choose one with {option}, of {known}")
+    from ..observe.reference import load_reference
+    return load_reference(options.against, options.setting, options.discard, contacts=True) if options.against else None

@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 from .. import _engine as engine
 from ..look import Path
 from ..number_text import shortest
+from ..results.engine_run import run_of
 from ..results.recording import Floats
 from .change_of_the_scene import Amplitudes, change_of_the_scene, simulate_motion
 from .decision import Findings, Limits
-from .diagnosis_types import Diagnosis, GapReduction, NextStep, Refinement, TopForce, Verdict, millimetres
+from .diagnosis_types import Diagnosis, GapReduction, NextStep, Refinement, Verdict
 from .effects import depends_on_speed
 from .evidence import CandidateRange, Evidence, NuisancePrior, PackingEvidence, leave_out_failures, mean_over_packings, take_means
 from .gap_reduction import PartialFit
@@ -18,6 +19,7 @@ from .library import Library, write_library
 from .library_origin import expect_alike_loads
 from .library_simulations import build_library, compare_at, fitting_library
 from .next_steps import ProtocolRuns, check_of, proposal_of_rival
+from .paper_metrics import paper_metrics
 from .signature import continued_from
 
 MAX_REFINEMENT = 64  # largest factor by which a refinement of a numerical setting is recommended
@@ -277,6 +279,6 @@ class _Diagnosing:
         few = min(self.options.replicates, confirmations)
         self.simulations.record([], few, self._stage("recordings"))
         self.simulations.record(fit, confirmations, self._stage("recordings"))
-        values, forces = self.simulations.metrics(fit, few, confirmations)
-        top_force = tuple(TopForce(millimetres(where), *rest) for where, *rest in forces)
-        return replace(shrink, metrics={name: (before, after) for name, (before, after) in values}, top_force=top_force)
+        experiment, before, after = (run_of(run).recordings for run in self.simulations.recordings(fit, few, confirmations))
+        metrics = paper_metrics(experiment, before, after)
+        return replace(shrink, metrics=metrics.values, top_force=metrics.top_force)

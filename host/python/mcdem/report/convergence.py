@@ -1,66 +1,15 @@
-"""Results of `mcdem converge`, read from its convergence.json, as a table and a figure. Its sentences are in the file."""
+"""Results of `mcdem converge` as a table and a figure."""
 import math
-import pathlib
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
-from ..errors import InputError
-from ..files import read_input
-from ..checked_json import Invalid, object_of, parsed
+from ..convergence.convergence_types import CellError, Convergence, unit_of
 from .diagnosis_words import words_of
 from .effect_names import OBSERVABLES
 from .labels import style_number
 from .text_table import Column, TextTable
 
-RELATIVE = ("top_force", "mean_force")  # observables that are logarithms
 X_LABEL = "largest error over phases and displacements / limit, ± two standard errors"
-
-
-@dataclass(frozen=True)
-class CellError:
-    """Error of an observable at one phase and displacement: the scene minus the limit of infinitely fine numerics."""
-    observable: str
-    error: float
-    standard_error: float
-    limit: float
-    beyond: bool  # significantly beyond the limit
-
-    @property
-    def over_limit(self) -> float:
-        return self.error / self.limit
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Largest errors allowed: relative ones of forces, and of all else in standard deviations of one packing's replicates."""
-    force: float
-    deviations: float
-
-
-@dataclass(frozen=True)
-class CauseErrors:
-    cause: str  # "plate speed"
-    errors: tuple[CellError, ...]
-
-
-@dataclass(frozen=True)
-class Convergence:
-    """The fields are named after the keys of the file. `words`: the result, and one line for each cause; `copies` describes the
-    replicas."""
-    replicas: int
-    copies: str
-    words: tuple[str, ...]
-    limits: Limits
-    causes: tuple[CauseErrors, ...]
-
-
-def read_convergence(file: str | pathlib.Path) -> Convergence:
-    """Raises InputError unless the file is a convergence.json."""
-    try:
-        return object_of(Convergence, parsed(read_input(file)))
-    except Invalid as error:
-        raise InputError(f"{file}: must be a convergence.json of mcdem: {error}") from error
 
 
 def _size(cell: CellError) -> float:
@@ -82,10 +31,8 @@ def table_of_convergence(convergence: Convergence) -> TextTable:
     def words(cell: CellError | None) -> str:
         if cell is None:
             return "-"
-        is_relative = cell.observable in RELATIVE
-        unit = 0.01 if is_relative else cell.limit / convergence.limits.deviations
-        return (f"{cell.error / unit:+.2f} +- {cell.standard_error / unit:.2f} {'%' if is_relative else 'sd'}"
-                f"{' *' if cell.beyond else '  '}")
+        unit, sign = unit_of(cell, convergence.limits)
+        return f"{cell.error / unit:+.2f} +- {cell.standard_error / unit:.2f} {sign}{' *' if cell.beyond else '  '}"
 
     columns = [Column("observable", "left"), *(Column(cause.cause) for cause in convergence.causes)]
     rows = [[observable, *map(words, worst)] for observable, worst in _worst(convergence)]

@@ -1,0 +1,176 @@
+"""The gamma with which a scene with model mc_dem has the reference's top force at its maximum compression; for a model without gamma the
+Young's modulus of the grains."""
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import InputError
+from ..number_text import shortest
+from ..observe.estimate import Estimate, mean_over_replicas
+from ..observe.levels import group_levels, level_tolerance
+from ..observe.replicas import MODEL, SEED, Replicas
+from ..observe.top_force import full_stroke, top_force_at
+from ..results.experiment import MATERIALS
+from ..results.names import ContactModel, ContainerShape, all_names, parse
+from ..results.parameters import Parameters, has_programme, keys_that_vary
+from ..results.recording import Floats
+from .search import Bracket, Calibration, SearchOptions, find_value
+
+if TYPE_CHECKING:
+    from .._engine import Batch, Scene
+
+GAMMA, MODULUS = "contact.gamma", "grains.youngs_modulus"  # scene keys
+LEFT_ASIDE = {MODEL, GAMMA, SEED}  # keys that may vary among the replicas of the scene
+
+
+@dataclass(frozen=True)
+class Options:
+    """`model`: for others than mc_dem E over that of the scene is searched for."""
+
+    model: ContactModel = ContactModel.mc_dem
+    bracket: Bracket = Bracket()
+    search: SearchOptions = SearchOptions()
+    device: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class SceneCalibration:
+    found: Calibration  # gamma, or E over that of the scene
+    target: Estimate  # mean top force of the reference [N]
+    simulated: Estimate  # of the scene's packings, for the last value that did not run away [N]
+    displacement: float = 0.0  # of the plate at the target [m]
+    replicas: int = 0  # number of packings in each evaluation
+    model: ContactModel = ContactModel.mc_dem
+    youngs_modulus: float = 0.0  # of the scene [Pa]; 0 if gamma was searched for
+
+    @property
+    def standard_error(self) -> float:
+        """Of found.value: of the fit, of the reference and of the scene's packings. A single packing has no standard error; its scatter
+        is left out."""
+        forces = [error for error in (self.target.standard_error, self.simulated.standard_error) if math.isfinite(error)]
+        return math.hypot(self.found.standard_error, *(error / self.found.slope for error in forces))
+
+    @property
+    def knows_scatter(self) -> bool:
+        return math.isfinite(self.target.standard_error) and math.isfinite(self.simulated.standard_error)
+
+    @property
+    def of_modulus(self) -> bool:
+        return self.youngs_modulus > 0
+
+    @property
+    def unit(self) -> float:
+        """Of the values in `found`."""
+        return self.youngs_modulus if self.of_modulus else 1.0
+
+
+def calibrated_model(model: str, option: str) -> ContactModel:
+    """The contact model to calibrate. Raises InputError, which names the `option` and all models."""
+    known = parse(ContactModel, model)
+    if known is None:
+        raise InputError(f'{option} must be one of {all_names(ContactModel)}, got "{model}"')
+    return known
+
+
+def calibrate_scene(scene: "Scene", reference: Replicas, options: Options, progress: Callable[[float], object],
+                    note: Callable[[str], object]) -> SceneCalibration:
+    """The scene provides packings, materials and protocol. Its contact.model and contact.gamma are ignored; nothing else may vary.
+
+    A value counts as running away if at least half of its replicas do; otherwise the mean is over the others. Raises InputError,
+    RunError.
+    """
+    parameters = _parameters(scene)
+    _check(parameters)
+    _note_other_materials(parameters[0], reference, options.model, note)
+    levels = group_levels(reference)
+    displacement = full_stroke(levels, reference)
+    _check_stroke(parameters[0], displacement)
+    target = mean_over_replicas(top_force_at(levels, reference, displacement).value)
+    modulus = 0.0 if options.model == ContactModel.mc_dem else float(parameters[0][MODULUS])
+    search = replace(options.search, what="E over the scene's") if modulus else options.search
+    from .._engine import Batch
+    trials = _Trials(Batch(scene_of_model(scene, options.model), options.device), parameters[0], modulus, displacement)
+    found = find_value(lambda values: trials.top_forces(values, lambda rounds: progress(rounds / search.rounds)), target.value,
+                       options.bracket, search)
+    return SceneCalibration(found, target, trials.last, displacement, trials.packings, options.model, modulus)
+
+
+def scene_of_model(scene: "Scene", model: ContactModel) -> "Scene":
+    """One replica with this contact model for each packing of the scene, of which only forces are recorded."""
+    return scene.parse(scene.text, set={MODEL: model.value, GAMMA: 1, "output.positions": False, "output.contacts": False})
+
+
+def _parameters(scene: "Scene") -> list[Parameters]:
+    """Of each replica; empty where a key does not apply."""
+    return [{key: "" if value is None else str(value) for key, value in one.items()} for one in scene.parameters]
+
+
+def _check(parameters: Sequence[Parameters]) -> None:
+    """Raises InputError for a scene that cannot be calibrated."""
+    if any(one["container.shape"] == ContainerShape.cell for one in parameters):
+        raise InputError("container.shape: must be one with a plate for a calibration, got cell: it compares strokes of a plate")
+    if any("species.1.name" in one for one in parameters):
+        raise InputError("species: must be left out of a scene for a calibration, which supports one material only")
+    if any(map(has_programme, parameters)):
+        raise InputError("programme: must be left out of a scene for a calibration, which compares the strokes of [plate] and [protocol] "
+                         "only")
+    problems = [f"calibrate: {key} must be the same for all replicas: give one value with --set {key}=.."
+                for key in keys_that_vary(parameters) if key not in LEFT_ASIDE]
+    if problems:
+        raise InputError(problems)
+
+
+def _note_other_materials(parameters: Parameters, reference: Replicas, model: ContactModel, note: Callable[[str], object]) -> None:
+    """Materials that the reference states and the scene does not have: the calibrated parameter would make up for them."""
+    others = []
+    for key in sorted(MATERIALS):
+        stated, text = reference[0].value(key), parameters[key]
+        is_searched = key == MODULUS and model != ContactModel.mc_dem
+        if isinstance(stated, (int, float)) and text and not is_searched and abs(float(text) - stated) > 1e-6 * abs(stated):
+            others.append(f"{key} = {shortest(stated)} (scene: {shortest(float(text))})")
+    if others:
+        note(f"the reference has {', '.join(others)}: the calibrated value makes up for the difference; change the scene with --set if the "
+             "reference is right")
+
+
+def _check_stroke(parameters: Parameters, displacement: float) -> None:
+    """Raises InputError if the plate of the scene cannot reach the greatest displacement of the reference [m]."""
+    if not math.isfinite(displacement):
+        raise InputError("calibrate: the reference must have a scan, got none (all cycles discarded, or all replicas failed)")
+    stroke = float(parameters["plate.start"]) - float(parameters["plate.end"])
+    if stroke < displacement - level_tolerance:
+        raise InputError("calibrate: plate.start - plate.end must reach the reference's greatest displacement of "
+                         f"{displacement * 1e3:.3f} mm, got {stroke * 1e3:.3f} mm")
+
+
+class _Trials:
+    """Simulates all packings for several values of the parameter, all in one batch to fill the device."""
+
+    def __init__(self, batch: "Batch", parameters: Parameters, modulus: float, displacement: float) -> None:
+        """`modulus`: of the scene [Pa], which the values multiply; 0: they are values of gamma."""
+        self._batch, self._displacement, self._modulus = batch, displacement, modulus
+        self._strokes = 2 * int(parameters["protocol.cycles"]) - 1  # the last unloading is not evaluated
+        self._scans = self._strokes * int(parameters["protocol.scans_per_stroke"]) + (parameters["protocol.scan_at_start"] == "True")
+        self._rounds = 0
+        self.packings = batch.packings
+        self.last = Estimate()  # top force of the last value that did not run away [N]
+
+    def top_forces(self, values: Floats, progress: Callable[[float], object]) -> Floats:
+        """Mean top force at the displacement for each value [N]; NaN if it ran away. `progress` is told the number of rounds so far."""
+        from ..results.engine_run import run_of
+        changes = [{MODULUS: self._modulus * value} if self._modulus else {GAMMA: value} for value in values.tolist()]
+        # The simulation may be one interval into the last unloading when it stops.
+        recordings = run_of(self._batch.simulate(changes, self._scans, lambda part: progress(
+            self._rounds + min(1.0, part * (self._strokes + 1) / self._strokes)))).recordings
+        self._rounds += 1
+        return np.array([self._mean_top_force(recordings[k * self.packings:][:self.packings]) for k in range(len(values))])
+
+    def _mean_top_force(self, replicas: Replicas) -> float:
+        mean = mean_over_replicas(top_force_at(group_levels(replicas), replicas, self._displacement).value)
+        if 2 * mean.count <= len(replicas):
+            return math.nan
+        self.last = mean
+        return mean.value

@@ -1,0 +1,1 @@
+"""Influence of a scene's numerics on its results: `mcdem converge`."""

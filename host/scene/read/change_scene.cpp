@@ -1,0 +1,80 @@
+#include "scene/read/change_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/errors.h"
+#include "scene/read/list_tables.h"
+#include "scene/read/scene_checks.h"
+#include "scene/read/toml_text.h"
+
+namespace mcdem::inline scene {
+namespace {
+
+/// Whether the key determines packings, containers or the number of replicas.
+bool is_fixed(std::string_view name) {
+    for (const std::string_view table : {"name", "container.", "box.", "packing.", "batch."})
+        if (name.starts_with(table)) return true;
+    if (!name.starts_with("species.")) return false;
+    const std::string_view last = last_part(name);
+    return last == "name" || last == "fraction" || last == "sizes" || last.starts_with("diameter_");
+}
+
+/// The key if the replica has it and it can be changed, or null.
+const Key* changeable_key(const std::string& name, const Replica& replica) {
+    const auto element = list_element(name);
+    if (element && element->number >= static_cast<int>(element->table->size(replica))) return nullptr;
+    return is_fixed(name) ? nullptr : find_key(name);
+}
+
+Settings settings_of(const Scene& run, const Replica& replica) {
+    Settings settings;
+    settings.run = run;
+    settings.replica = replica;
+    settings.cylinder_radius = replica.box.size_x / 2;
+    settings.cell_height = replica.box.height;
+    if (const auto* file = std::get_if<PackingFile>(&replica.packing.source))
+        settings.packing_file = file->path;
+    else
+        settings.generated = std::get<GeneratedPacking>(replica.packing.source);
+    return settings;
+}
+
+}  // namespace
+
+Scene with_changes(const Scene& scene, const std::map<std::string, std::string>& values) {
+    std::vector<std::string> problems;
+    const auto report = [&](std::string problem) {
+        if (std::ranges::find(problems, problem) == problems.end()) problems.push_back(std::move(problem));
+    };
+    Scene changed = scene;
+    Scene run = scene;
+    run.replicas.clear();
+    for (Replica& replica : changed.replicas) {
+        Settings settings = settings_of(run, replica);
+        for (const auto& [name, text] : values) {
+            const Key* key = changeable_key(name, replica);
+            const auto value = parse_value(text);
+            if (!key || !value) {
+                report(fmt::format("{}: must be a key {}, got {}", name,
+                                   key ? "with a value of TOML" : "that can change on the same packings",
+                                   key ? text : "another one"));
+            } else if (const auto problem = assign(*key, *value->get("value"), settings)) {
+                report(fmt::format("{} {}", name, *problem));
+            } else {
+                settings.replica.parameters[name] = value_text(*key, settings);
+            }
+        }
+        for (const CrossProblem& problem : cross_problems(settings, {}))
+            report(fmt::format("{} {}", problem.key, problem.what));
+        replica = settings.replica;
+        changed.precision = settings.run.precision;
+        changed.output = settings.run.output;
+        changed.slots = settings.run.slots;
+    }
+    if (!problems.empty()) throw InputError(problems);
+    return changed;
+}
+
+}  // namespace mcdem::scene

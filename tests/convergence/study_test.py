@@ -1,0 +1,94 @@
+"""Steps of a study whose simulations are made up: what is simulated, on which packings, and what is refused. study_test.py"""
+import types
+import unittest
+
+import numpy as np
+from refinements_test import PARAMETERS
+
+from mcdem.convergence.convergence_types import Limits
+from mcdem.convergence.converge import Study
+from mcdem.diagnosis.observables import Grid, cells_of, observables
+from mcdem.errors import InputError
+
+GRID = {"displacement": [0.01, 0.02], "width": 0.002, "stroke": 0.02, "force": [], "force_width": 0.0, "holds": []}
+CELLS = cells_of(Grid([0.01, 0.02], 0.002, 0.02))
+FIRST = [observables()[cell.observable].name for cell in CELLS].index
+REPLICAS = 8
+
+
+class Simulated:
+    """As engine.ConvergenceSimulator. All observables increase with the speed of the plate; `scatter` is that between copies."""
+
+    def __init__(self, scatter=0.1, draws_packings=True, grid=GRID):
+        self.draws_packings, self.grid, self.drawn, self.asked, self.lost = draws_packings, grid, False, [], {}
+        self._random = np.random.default_rng(3)
+        self.packing = self._random.normal(0, scatter, (REPLICAS, len(CELLS)))
+
+    def find_grid(self, progress=None):
+        return self.grid
+
+    def observe(self, changes, progress=None):
+        progress(0.5)
+        self.asked.append(dict(changes))
+        observed = self.packing + changes.get("plate.speed", 0.1)
+        for (row, cell) in self.lost:
+            observed[row, cell] = np.nan
+        return observed
+
+    def draw_packings(self):
+        self.drawn, self.packing = True, self._random.normal(0, 0.1, self.packing.shape)
+
+
+class Studies(unittest.TestCase):
+    def study(self, simulated, jitter=0.0, **parameters):
+        self.told = []
+        scene = types.SimpleNamespace(name="small", parameters=[PARAMETERS | parameters])
+        return Study(scene, simulated, jitter, Limits(), lambda stage, fraction: self.told.append((stage, fraction))).run()
+
+    def test_simulates_the_scene_and_every_refinement_of_it(self):
+        simulated = Simulated()
+        made = self.study(simulated)
+        self.assertEqual([len(changes) for changes in simulated.asked], [0, 2, 2, 2, 1, 1, 1])
+        self.assertEqual(self.told, [(stage, 0.5) for stage in ("the scene as it stands", *["plate speed"] * 3, "inertia", "time step",
+                                                                "list margin")])
+        self.assertEqual((made.scene, made.replicas, made.copies, simulated.drawn), ("small", 8, "jittered copies of one packing", False))
+        speed, *others = made.causes
+        self.assertEqual({round(cell.error, 12) for cell in speed.errors}, {0.1})
+        self.assertEqual({cell.error for cause in others for cell in cause.errors}, {0})
+        self.assertEqual(made.words[0], "Not converged.")
+        self.assertRegex(made.words[1], "^plate speed: top_force is 10 .* within the limit with plate.speed = 0.1 / 20")
+        self.assertEqual(made.words[2:], tuple(f"{cause}: no influence in these runs" for cause in ("inertia", "time step", "list margin")))
+
+    def test_new_packings_are_drawn_if_copies_hardly_differ(self):
+        for options, jitter, drawn, copies in (
+                ({}, 0, True, "new random packings, because jittered copies of one hardly differ"),
+                ({}, 1e-3, False, "jittered copies of one packing"),
+                ({"draws_packings": False}, 0, False, "jittered copies of one packing, which hardly differ; a packing.file has no random "
+                                                      "copies: a larger --jitter makes them")):
+            simulated = Simulated(scatter=0, **options)
+            made = self.study(simulated, jitter)
+            self.assertEqual((simulated.drawn, made.copies), (drawn, copies))
+            self.assertEqual(("new random packings", 0.5) in self.told, drawn)
+            self.assertEqual(made.causes[0].errors[0].standard_deviation > 0.01, drawn)
+
+    def test_four_replicas_must_press(self):
+        simulated = Simulated()
+        simulated.lost = {(row, FIRST("top_force")) for row in range(4)}
+        self.study(simulated)
+        simulated.lost.add((4, FIRST("top_force")))
+        with self.assertRaisesRegex(InputError, "^small: 3 of 8 replicas reach the first compared displacement with a force on the plate, "
+                                                "and 4 are needed: `mcdem run` with the same settings says why$"):
+            self.study(simulated)
+        self.assertEqual(self.told, [("the scene as it stands", 0.5)])
+
+    def test_where_forces_are_set_displacements_count(self):
+        simulated = Simulated(grid=GRID | {"force": [0.5, 1.0], "force_width": 0.1})
+        simulated.lost = {(row, FIRST("top_force")) for row in range(8)}
+        self.assertEqual(len(self.study(simulated).causes), 4)
+        simulated.lost = {(row, FIRST("displacement")) for row in range(8)}
+        with self.assertRaisesRegex(InputError, "0 of 8 replicas"):
+            self.study(simulated)
+
+
+if __name__ == "__main__":
+    unittest.main()
