@@ -24,16 +24,17 @@ FLOORS = {
 ROOMS = {
     "results": [],
     "importing": [],
-    "observe": ["results"],
+    "experiment": ["importing", "results"],
+    "observe": ["experiment", "results"],
     "exporting": ["results"],
-    "calibration": ["observe", "results"],
-    "diagnosis": ["observe", "results"],
+    "calibration": ["observe", "experiment", "results"],
+    "diagnosis": ["observe", "experiment", "results"],
     "convergence": ["diagnosis", "observe", "results"],
-    "report": ["convergence", "diagnosis", "observe", "results"],
+    "report": ["convergence", "diagnosis", "observe", "experiment", "results"],
     "figures": ["report"],
-    "challenge": ["report", "diagnosis", "results"],
-    "commands": ["challenge", "figures", "report", "convergence", "diagnosis", "calibration", "observe", "exporting", "importing",
-                 "results"],
+    "challenge": ["report", "diagnosis", "experiment", "results"],
+    "commands": ["challenge", "figures", "report", "convergence", "diagnosis", "calibration", "observe", "exporting", "experiment",
+                 "importing", "results"],
 }
 LONGEST_FILE = 400
 LONGEST_FUNCTION = 70

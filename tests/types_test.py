@@ -7,9 +7,9 @@ import pathlib
 import subprocess
 import sys
 
-ROOMS = ("results", "observe", "calibration", "diagnosis", "convergence", "report", "challenge", "commands", "checked_json.py", "command.py",
-         "comparing.py", "diagnosing.py", "errors.py",
-         "files.py", "look.py", "manifest.py", "number_text.py", "outputs.py", "parts.py", "program.py", "progress.py")
+ROOMS = ("results", "experiment", "observe", "calibration", "diagnosis", "convergence", "report", "challenge", "commands",
+         "checked_json.py", "command.py", "comparing.py", "diagnosing.py", "errors.py", "files.py", "look.py", "manifest.py",
+         "number_text.py", "outputs.py", "parts.py", "problems.py", "program.py", "progress.py", "warn.py")
 
 
 def main():

@@ -1,12 +1,9 @@
-// Measured compressions: a folder with experiment.toml, plate.csv and optionally grains.csv and contacts.csv
-// (README.md in this folder), read into the same form as simulations.
+// Measured compressions in the same form as simulations (host/python/mcdem/experiment reads their folders,
+// README.md in this folder).
 #pragma once
-#include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "core/recording.h"
 
@@ -33,36 +30,5 @@ struct Experiment {
     double plate_pause = 0;  ///< the plate stands for this time at each scan [s]; 0: it does not stop
     double plate_hold = 0;   ///< .. at the lowest position [s]
 };
-
-/// The scene keys that `materials` and `uncertainty` may contain.
-const std::vector<std::string>& material_keys();
-
-/// Maximum uncompressed size of one table [bytes]: 1 GiB, about 12 million contacts. Reading needs about
-/// twice as much memory as the tables have bytes.
-inline constexpr std::uintmax_t largest_table = std::uintmax_t{1} << 30;
-
-/// Throws InputError with all problems (at most 20), each as file:line and a remedy.
-Experiment read_experiment(const std::filesystem::path& folder, std::uintmax_t largest = largest_table);
-
-/// Packings of one experiment; several are named by their folders. Throws InputError, which names the
-/// `option`, if there is none or one is given twice.
-std::vector<Experiment> read_experiments(const std::vector<std::filesystem::path>& folders,
-                                         const std::string& option);
-
-enum class Packed { plain, gzip };
-
-/// Writes the folder so that read_experiment returns the same content, with exact numbers. Averages are not
-/// written; `measured` (instrument.h) must remove what an instrument would not see.
-void write_experiment(const std::filesystem::path& folder, const Experiment& experiment,
-                      Packed packed = Packed::plain);
-
-/// Contents of these files by name.
-std::map<std::string, std::string> experiment_files(const Experiment& experiment, Packed packed);
-
-/// SHA-256 and name of each file, in the format of `sha256sum -c`.
-std::string sums_text(const std::map<std::string, std::string>& files);
-
-/// The file of an experiment with these sums.
-inline constexpr const char* sums_file = "SHA256SUMS";
 
 }  // namespace mcdem::experiment

@@ -1,21 +1,34 @@
 #include "experiment/instrument.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "core/container.h"
-#include "core/errors.h"
 #include "core/parameters.h"
-#include "experiment/measurements.h"
-#include "scene/packing/packing_fields.h"
 #include "scene/random.h"
 
 namespace mcdem::inline experiment {
 namespace {
+
+/// All values are unknown; measured at rest.
+Scan unknown_scan() {
+    Scan scan;
+    scan.time = unknown;
+    scan.kinetic_energy = scan.elastic_energy = unknown;
+    scan.coordination_number = scan.mean_force = scan.packing_fraction = scan.branch_length = unknown;
+    scan.settled = true;
+    for (Vec3& force : scan.wall_force) force.setConstant(unknown);
+    return scan;
+}
+
+/// The largest force on the plate in any scan, at least 0 [N].
+double highest_top_force(const Recording& recording) {
+    double highest = 0;
+    for (const Scan& scan : recording.scans) highest = std::max(highest, scan.top_force());
+    return highest;
+}
 
 class Reading {
 public:
@@ -177,14 +190,7 @@ void average(Scan& scan, double grains, double force_threshold) {
     if (branches > 0) scan.branch_length = length / branches;
 }
 
-}  // namespace
-
-double highest_top_force(const Recording& recording) {
-    double highest = 0;
-    for (const Scan& scan : recording.scans) highest = std::max(highest, scan.top_force());
-    return highest;
-}
-
+/// Computes wall forces except the plate's, Z, <f> and <b> of the scans with contacts.
 void average_contacts(Recording& recording, double force_threshold) {
     const auto measured = measured_walls(recording);
     for (Scan& scan : recording.scans) {
@@ -193,6 +199,8 @@ void average_contacts(Recording& recording, double force_threshold) {
         average(scan, static_cast<double>(recording.diameter.size()), force_threshold);
     }
 }
+
+}  // namespace
 
 Recording measured(const Recording& truth, const Instrument& instrument, std::uint64_t seed) {
     Recording recording;
@@ -214,28 +222,6 @@ Recording measured(const Recording& truth, const Instrument& instrument, std::ui
                                                late_top_force(truth.scans, path, s, instrument.force_lag)));
     average_contacts(recording, instrument.stated.force_threshold);
     return recording;
-}
-
-Experiment experiment_from(const Recording& truth, const Instrument& instrument, std::uint64_t seed) {
-    if (is_cell(truth.box))
-        throw InputError(
-            fmt::format("{}: container.shape must be one with a plate, got {}: an experiment is a "
-                        "compression by a plate",
-                        truth.label, name(truth.box.shape)));
-    Experiment experiment;
-    experiment.name = truth.label;
-    experiment.measurement = instrument.stated;
-    for (const std::string& key : material_keys())
-        if (const auto found = truth.parameters.find(key); found != truth.parameters.end())
-            if (const auto value = to_number(found->second)) experiment.materials[key] = *value;
-    Recording& recording = experiment.recording = measured(truth, instrument, seed);
-    if (!recording.scans.empty() && !recording.scans.front().position.empty()) return experiment;
-    recording.diameter.clear();
-    for (Scan& scan : recording.scans) {
-        scan.position.clear();
-        scan.contacts.clear();
-    }
-    return experiment;
 }
 
 }  // namespace mcdem::experiment

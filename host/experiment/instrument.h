@@ -26,7 +26,7 @@ struct Instrument {
     double force_saturation = 0;  ///< a contact force f is read as f/(1 + force_saturation f) [1/N]
 };
 
-/// `truth` as the instrument reads it, in the form in which read_experiment would give it: normal noise on
+/// `truth` as the instrument reads it, in the form of an experiment that was read: normal noise on
 /// positions (anew in each scan), on diameters and on the size of contact forces; contact points err with the
 /// centres beside them; contacts below the threshold are gone. Lengths are read too large from the middle of
 /// the floor. Of the walls' forces the top force is read without noise, the others are the sums of the
@@ -34,9 +34,5 @@ struct Instrument {
 /// The noise depends on the seed and on what is measured (scan, grain, partner) only: of two similar packings
 /// it is alike.
 Recording measured(const Recording& truth, const Instrument& instrument, std::uint64_t seed);
-
-/// `truth` measured with `instrument` (instrument.h). Materials are taken from its parameters. Without
-/// positions in frame 0 only the plate is written, because grains and contacts have no identity.
-Experiment experiment_from(const Recording& truth, const Instrument& instrument, std::uint64_t seed);
 
 }  // namespace mcdem::experiment

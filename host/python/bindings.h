@@ -14,6 +14,8 @@ void bind_scene(pybind11::module_& module);
 void bind_results(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
 void bind_batch(pybind11::module_& module);
+void bind_experiment(pybind11::module_& module);
+void bind_programmes(pybind11::module_& module);
 void bind_convergence_simulator(pybind11::module_& module);
 void bind_path(pybind11::module_& module);
 void bind_random(pybind11::module_& module);

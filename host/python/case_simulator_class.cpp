@@ -1,7 +1,6 @@
 // mcdem._engine.CaseSimulator: the simulated experiments of a challenge
 // (ensemble/diagnosis/case_simulator.h).
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include "core/errors.h"
 #include "ensemble/diagnosis/case_simulator.h"
@@ -68,7 +67,12 @@ void bind_case_simulator(py::module_& module) {
                                [&](const auto& p) { return s.simulate(cases, part, p); });
             },
             py::arg("cases"), py::arg("loading"), py::arg("progress") = py::none())
-        .def("write", &CaseSimulator::write, py::arg("k"), py::arg("folder"));
+        .def(
+            "measured",
+            [](const CaseSimulator& s, std::size_t k) {
+                return std::make_shared<Run>(Run{"", "", "", "", "", {s.measured(k)}});
+            },
+            py::arg("k"));
     module.def("outside_effects", &outside_rows,
                "Effects that no library has: name, smallest and largest amplitude, whether either sign.");
     module.def("derived_seed", &derived_seed, py::arg("seed"), py::arg("number"));

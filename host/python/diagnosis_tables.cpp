@@ -1,10 +1,8 @@
 // mcdem._engine.effects and .observables: the tables of the diagnosis.
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include "diagnose/effects.h"
 #include "diagnose/observe/scan_observables.h"
-#include "experiment/check_experiment.h"
 #include "python/bindings.h"
 
 namespace mcdem::inline python {
@@ -52,12 +50,6 @@ py::list observable_rows() {
 
 void bind_diagnosis_tables(py::module_& module) {
     module.def("effects", &effect_rows, "The candidate effects, in the order of the documentation.");
-    module.def(
-        "odd_data",
-        [](const std::filesystem::path& folder) {
-            return check_experiment(read_experiment(folder)).of(Severity::odd);
-        },
-        py::arg("folder"), "What is implausible in the folder of an experiment (`mcdem experiment check`).");
     module.def("observables", &observable_rows, "The observables, in the order of an observation's entries.");
 }
 

@@ -59,6 +59,8 @@ PYBIND11_MODULE(_engine, module) {
     mcdem::bind_scene(module);
     mcdem::bind_results(module);
     mcdem::bind_simulation(module);
+    mcdem::bind_programmes(module);
+    mcdem::bind_experiment(module);
     mcdem::bind_batch(module);
     mcdem::bind_convergence_simulator(module);
     mcdem::bind_path(module);

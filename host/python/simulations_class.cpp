@@ -28,31 +28,29 @@ PlanOptions plan_options(const std::vector<std::string>& candidates, int replica
     return options;
 }
 
-std::unique_ptr<Simulations> of_experiments(const Scene& scene, const std::vector<fs::path>& experiments,
+std::unique_ptr<Simulations> of_experiments(const Scene& scene, const std::vector<Experiment>& experiments,
                                             const fs::path& store, const std::vector<std::string>& candidates,
                                             int replicates, int pairs, std::uint64_t seed, bool recordings,
-                                            const std::string& device, const std::string& option,
-                                            const py::function& note) {
+                                            const std::string& device, const py::function& note) {
     std::vector<std::string> notes;
     std::unique_ptr<Simulations> simulations;
     {
         const py::gil_scoped_release others_go_on;
         PlanOptions options = plan_options(candidates, replicates, pairs, seed, recordings);
         options.on_note = [&](const std::string& text) { notes.push_back(text); };
-        simulations = std::make_unique<Simulations>(
-            plan_of(scene, read_experiments(experiments, option), options), store, device);
+        simulations = std::make_unique<Simulations>(plan_of(scene, experiments, options), store, device);
     }
     for (const std::string& text : notes) note(text);
     return simulations;
 }
 
-std::unique_ptr<Simulations> of_others(const Scene& scene, const fs::path& experiment, int packings,
+std::unique_ptr<Simulations> of_others(const Scene& scene, const Experiment& experiment, int packings,
                                        const fs::path& store, const std::vector<std::string>& candidates,
                                        int replicates, int pairs, std::uint64_t seed,
                                        const std::string& device) {
     return watched(py::none(), [&](const TrialOptions& options) {
         return std::make_unique<Simulations>(
-            plan_of_others(scene, read_experiment(experiment), packings,
+            plan_of_others(scene, experiment, packings,
                            plan_options(candidates, replicates, pairs, seed, false), options.stop_wanted),
             store, device);
     });
@@ -157,7 +155,7 @@ void bind_simulations(py::module_& module) {
     py::class_<Simulations> type(module, "Simulations", "The simulations that a diagnosis asks for.");
     type.def(py::init(&of_experiments), py::arg("scene"), py::arg("experiments"), py::arg("store"),
              py::kw_only(), py::arg("candidates"), py::arg("replicates"), py::arg("pairs"), py::arg("seed"),
-             py::arg("recordings"), py::arg("device"), py::arg("option"), py::arg("note"))
+             py::arg("recordings"), py::arg("device"), py::arg("note"))
         .def_static("of_others", &of_others, py::arg("scene"), py::arg("experiment"), py::arg("packings"),
                     py::arg("store"), py::kw_only(), py::arg("candidates"), py::arg("replicates"),
                     py::arg("pairs"), py::arg("seed"), py::arg("device"))

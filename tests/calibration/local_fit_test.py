@@ -12,7 +12,8 @@ EXACT = 1e-12  # rounding of a fit of six points of order one
 
 class RisingFit(unittest.TestCase):
     def test_pools_decreasing_values(self):
-        for values, fit in (([1, 3, 2, 5], [1, 2.5, 2.5, 5]), ([3, 2, 1], [2, 2, 2]), ([1, 2], [1, 2]), ([2, 2, 5, 1], [2, 2, 3, 3]), ([], [])):
+        for values, fit in (([1, 3, 2, 5], [1, 2.5, 2.5, 5]), ([3, 2, 1], [2, 2, 2]), ([1, 2], [1, 2]), ([2, 2, 5, 1], [2, 2, 3, 3]),
+                            ([], [])):
             assert_array_equal(rising_fit(np.array(values, float)), fit)
 
 

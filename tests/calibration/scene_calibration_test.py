@@ -111,6 +111,8 @@ class OneGrain(unittest.TestCase):
                                    "choose one with setting, of independent, elastic_sphere": {}}.items():
             with self.assertRaisesRegex(ValueError, problem):
                 calibrate(self.scene(), run, **arguments)
+        with self.assertRaisesRegex(TypeError, "must be a Run, or the path of a result or an experiment"):
+            calibrate(self.scene(), 3)
 
     def test_an_interruption_ends_the_simulations(self):
         def interrupt(_):
@@ -124,7 +126,8 @@ class OneGrain(unittest.TestCase):
 class Scenes(unittest.TestCase):
     def test_one_replica_of_the_model_runs_for_each_packing(self):
         scene = scene_of_model(mcdem.Scene(SMALL, **MODELS | {"batch.replicas": 3, "contact.gamma": 2}), ContactModel.mc_dem)
-        self.assertEqual([(one["contact.model"], one["packing.seed"]) for one in scene.parameters], [("mc_dem", 1), ("mc_dem", 2), ("mc_dem", 3)])
+        self.assertEqual([(one["contact.model"], one["packing.seed"]) for one in scene.parameters],
+                         [("mc_dem", 1), ("mc_dem", 2), ("mc_dem", 3)])
         self.assertEqual([(one["output.positions"], one["output.contacts"]) for one in scene.parameters], [(False, False)] * 3)
         scene = mcdem.Scene(SMALL, **{"batch.vary": {"contact.gamma": [0.5, 1], "packing.seed": [7, 5]}})
         self.assertEqual([one["packing.seed"] for one in scene_of_model(scene, ContactModel.independent).parameters], [7, 5])
@@ -134,7 +137,7 @@ class Scenes(unittest.TestCase):
         stage = {"programme": [{"stage": "move", "strain": 0.1}]}
         for problem, tables in {"grains.friction must be the same for all replicas: give one value with --set grains.friction=..":
                                 SMALL | {"batch.vary": {"grains.friction": [0.01, 0.02]}},
-                                "species: must be left out": SMALL | {"species": [{"name": "soft"}, {"name": "stiff", "youngs_modulus": 1e5}]},
+                                "species: must be left out": SMALL | {"species": [{"name": "soft"}, {"name": "stiff", "friction": 0.1}]},
                                 "programme: must be left out": SMALL | {"programme": [{"stage": "move", "position": 0.08}]},
                                 "container.shape: must be one with a plate": cell | stage}.items():
             with self.subTest(problem), self.assertRaisesRegex(InputError, problem):

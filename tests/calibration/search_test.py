@@ -71,7 +71,7 @@ class Search(unittest.TestCase):
         self.assertAlmostEqual(self.found(top_forces, 1.1, 0.5, 1.6, batch=12).value, 1.1, delta=1e-3)
 
     def test_every_round_stays_below_the_runaways_before_it(self):
-        found = self.found(Simulator(0.003, limit=1.13), 1.125, 0.4, 1.6, tolerance=1e-4, rounds=12)
+        found = self.found(Simulator(0.01, limit=1.13), 1.125, 0.4, 1.6, tolerance=1e-4, rounds=12)
         lowest = math.inf
         for one in found.rounds:
             self.assertLess(one.values.max(), lowest)

@@ -9,6 +9,10 @@ import numpy as np
 from small_scene import scene_text
 
 from mcdem._engine import CaseSimulator, outside_effects, scene_of_options
+from mcdem.experiment.experiment import Measurement
+from mcdem.experiment.from_run import experiment_from
+from mcdem.experiment.write import write_experiment
+from mcdem.results.engine_run import run_of
 
 SCENE = scene_text("small", 0.0555)
 AMPLITUDES = {"vertical_stretch": 0.01, "plate_backlash": 1e-3, "soft_walls": 2.0, "box_error": 0.02}
@@ -39,7 +43,8 @@ class OutsideEffects(unittest.TestCase):
         failures = simulator.simulate([(name, hidden, [], 0, 5) for name, hidden in effects.items()], False)
         assert not any(failures), failures
         for k, name in enumerate(effects):
-            simulator.write(k, cls.folder / name)
+            seen = run_of(simulator.measured(k)).recordings[0]
+            write_experiment(cls.folder / name, experiment_from(seen, Measurement()), gzip=True)
 
     def values(self, effect, name, column):
         """Those of the experiment without an effect, and of the one with it."""

@@ -11,6 +11,11 @@ from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.diagnose import Listener, Options, diagnose, make_simulations
 from mcdem.diagnosis.diagnosis_types import Verdict
 from mcdem.diagnosis.library import read_library
+from mcdem.experiment.experiment import Measurement
+from mcdem.experiment.from_run import experiment_from
+from mcdem.experiment.read import read_experiment
+from mcdem.experiment.write import write_experiment
+from mcdem.results.engine_run import run_of
 
 SMALL = """name = "small"
 [box]
@@ -71,12 +76,13 @@ class Diagnoses(unittest.TestCase):
         failures = simulator.simulate([(name, effects, [], 0, 5) for name, effects in cases.items()], False)
         assert failures == ["", ""], failures
         for k, name in enumerate(cases):
-            (cls.folder / name).mkdir()
-            simulator.write(k, cls.folder / name)
+            seen = run_of(simulator.measured(k)).recordings[0]
+            write_experiment(cls.folder / name, experiment_from(seen, Measurement(*MEASUREMENT)), gzip=True)
 
     def diagnosed(self, experiment, options, store="simulations"):
         listener = Kept()
-        simulations = make_simulations(self.scene, [self.folder / experiment], self.folder / store, options, listener=listener)
+        experiments = [read_experiment(self.folder / experiment)]
+        simulations = make_simulations(self.scene, experiments, self.folder / store, options, listener=listener)
         return diagnose(self.scene, simulations, options, listener), listener
 
     def with_pauses(self, speed):

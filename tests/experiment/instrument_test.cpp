@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "experiment/experiment_folder.h"
 #include "scene/random.h"
 
 namespace mcdem::test::instrument {
@@ -47,45 +46,7 @@ Recording truth() {
     return recording;
 }
 
-bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
-bool same(const Vec3& a, const Vec3& b) {
-    return same(a.x(), b.x()) && same(a.y(), b.y()) && same(a.z(), b.z());
-}
-
-void expect_same(const Scan& a, const Scan& b) {
-    EXPECT_EQ(a.frame, b.frame);
-    EXPECT_EQ(a.cycle, b.cycle);
-    EXPECT_EQ(a.phase, b.phase);
-    EXPECT_EQ(a.settled, b.settled);
-    for (const auto value :
-         {&Scan::time, &Scan::plate_z, &Scan::kinetic_energy, &Scan::elastic_energy,
-          &Scan::coordination_number, &Scan::mean_force, &Scan::packing_fraction, &Scan::branch_length})
-        EXPECT_TRUE(same(a.*value, b.*value)) << a.*value << " and " << b.*value;
-    for (std::size_t wall = 0; wall < wall_count; ++wall)
-        EXPECT_TRUE(same(a.wall_force[wall], b.wall_force[wall])) << wall;
-    EXPECT_EQ(a.position, b.position);
-    ASSERT_EQ(a.contacts.size(), b.contacts.size());
-    for (std::size_t c = 0; c < a.contacts.size(); ++c) {
-        const Contact &p = a.contacts[c], &q = b.contacts[c];
-        EXPECT_TRUE(p.grain == q.grain && p.partner == q.partner && p.point == q.point &&
-                    p.force == q.force && same(p.overlap, q.overlap));
-    }
-}
-
 const Instrument noisy{{1e-4, 5e-5, 0.05, 0.02}, 0.03, -0.01, 0.002, 1e-4};
-
-TEST(measured, equals_what_a_folder_returns) {
-    for (const Instrument& instrument : {noisy, Instrument{}}) {
-        const Recording seen = measured(truth(), instrument, 7);
-        ExperimentFolder folder;
-        write_experiment(folder.path(), {"seen", seen, {}, {}, instrument.stated});
-        const Recording read = read_experiment(folder.path()).recording;
-        EXPECT_EQ(read.diameter, seen.diameter);
-        EXPECT_EQ(read.plate_start, seen.plate_start);
-        ASSERT_EQ(read.scans.size(), seen.scans.size());
-        for (std::size_t s = 0; s < seen.scans.size(); ++s) expect_same(seen.scans[s], read.scans[s]);
-    }
-}
 
 TEST(measured, is_exact_with_a_perfect_instrument) {
     const Recording real = truth(), seen = measured(real, {}, 1);

@@ -1,17 +1,13 @@
-"""Experiments made by hand, and the commands that read them with runs. experiment_test.py"""
+"""Commands that read runs and experiments, without the compiled module. experiment_test.py"""
 import contextlib
-import gzip
 import io
-import math
 import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
-from unittest import mock
 
-import numpy as np
 import written
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "host/python"))
@@ -19,26 +15,18 @@ from mcdem.commands.command_line import run_command  # noqa: E402
 from mcdem.commands.sources import load_runs, names_of  # noqa: E402
 from mcdem.errors import InputError  # noqa: E402
 from mcdem.observe.reference import chosen_setting, load_reference  # noqa: E402
-from mcdem.results import Wall, read_run  # noqa: E402
-from mcdem.results.experiment import read_experiment  # noqa: E402
+from mcdem.results import read_run  # noqa: E402
 
 PACKAGE = pathlib.Path(__file__).parents[2] / "host/python"
-SETTINGS = """
-name = "by hand"
-[box]
-size = [0.05, 0.06]
-[plate]
-start = 0.1
-[grains]
-youngs_modulus = 23300.0
-[measurement]
-force_threshold = 0.5
-"""
-PLATE = "# a comment\nphase,frame,cycle,plate_z_m,top_force_N,note\nload,0,0,0.1,0,a\n\n\"load\", 1,0,0.09,4.5,b\nunload,2,1,0.095,2,c\n"
-GRAINS = "frame,grain,x_m,y_m,z_m,diameter_m\n0,1,0.03,0.01,0.01,0.021\n0,0,0.01,0.01,0.01,0.02\n1,0,0.01,0.01,0.01,0.02\n1,1,0.04,0.05,0.01,0.02\n"
-CONTACTS = ("frame,grain,partner,x_m,y_m,z_m,fx_N,fy_N,fz_N\n1,1,0,0.02,0.01,0.01,3,0,4\n1,0,floor,0.01,0.01,0,0,0,2\n"
-            "1,1,plate,0.01,0.01,0.09,0,0,-0.25\n")
-HEAD = "#!/bin/sh\n"
+PLATE = "frame,cycle,phase,plate_z_m,top_force_N\n0,0,load,0.022,0\n1,0,load,0.002,4\n2,0,unload,0.021,0.01\n"
+
+
+def write_lab(folder):
+    """An experiment of the plate alone."""
+    (lab := folder / "lab").mkdir()
+    (lab / "experiment.toml").write_text('name = "by hand"\nbox.size = [0.05, 0.06]\n')
+    (lab / "plate.csv").write_text(PLATE)
+    return lab
 
 
 class Experiments(unittest.TestCase):
@@ -46,72 +34,7 @@ class Experiments(unittest.TestCase):
         kept = tempfile.TemporaryDirectory()
         self.addCleanup(kept.cleanup)
         self.folder = pathlib.Path(kept.name)
-        self.lab = self.folder / "lab"
-        self.lab.mkdir()
-        self.write(SETTINGS)
-        self.program("exit 0")
-
-    def write(self, settings, plate=PLATE, grains=GRAINS, contacts=CONTACTS):
-        for name, text in (("experiment.toml", settings), ("plate.csv", plate), ("grains.csv", grains), ("contacts.csv", contacts)):
-            (self.lab / name).write_text(text)
-
-    def program(self, script):
-        """Stands for the program that checks the folder."""
-        file = self.folder / "mcdem"
-        file.write_text(HEAD + script)
-        file.chmod(0o755)
-        patch = mock.patch.dict(os.environ, MCDEM_PROGRAM=str(file))
-        patch.start()
-        self.addCleanup(patch.stop)
-
-    def test_values(self):
-        one = read_experiment(str(self.lab))
-        self.assertEqual((one.label, one.box.size_x, one.box.size_y, one.parameters), ("by hand", 0.05, 0.06,
-                                                                                      {"grains.youngs_modulus": "23300"}))
-        np.testing.assert_allclose(one.displacement, [0, 0.01, 0.005], atol=1e-15)
-        self.assertEqual((one.scans.phase.tolist(), one.scans.cycle.tolist()), ([0, 0, 1], [0, 0, 1]))
-        self.assertEqual(one.scans.top_force.tolist(), [0, 4.5, 2])
-        self.assertEqual(one.diameter.tolist(), [0.02, 0.021])  # of frame 0
-        contacts = one.scans.contacts[1]
-        self.assertEqual((contacts.grain.tolist(), contacts.partner.tolist()), ([0, 0, 1], [1, -5, -6]))
-        self.assertEqual(contacts.force[0].tolist(), [-3, 0, -4])  # listed from the other side
-        np.testing.assert_equal(one.scans.coordination_number, [math.nan, (2 + 1) / 2, math.nan])  # without that below the threshold
-        np.testing.assert_allclose([one.scans.mean_force[1], one.scans.branch_length[1]], [(5 + 2) / 2, 0.05])
-        self.assertEqual(one.scans.wall_force[1, Wall.floor].tolist(), [0, 0, -2])
-        self.assertEqual(one.scans.wall_force[1, Wall.plate, 2], 4.5)  # the gauge also measures weak contacts
-        self.assertTrue(np.isnan(one.scans.wall_force[1, Wall.x_min]).all())
-
-    def test_other_containers_and_compressed_tables(self):
-        self.write('[container]\nshape = "cylinder"\nradius = 0.03\n', contacts=CONTACTS.replace("floor", "side"))
-        (self.lab / "contacts.csv.gz").write_bytes(gzip.compress((self.lab / "contacts.csv").read_bytes()))
-        (self.lab / "contacts.csv").unlink()
-        one = read_experiment(str(self.lab))
-        self.assertEqual((one.label, one.box.size_x, one.plate_start), ("lab", 0.06, 0.1))
-        self.assertEqual(one.scans.contacts[1].partner.tolist(), [1, -1, -6])
-        self.write('[container]\nshape = "periodic"\n' + SETTINGS.replace('name = "by hand"', ""))
-        (self.lab / "contacts.csv.gz").unlink()
-        position = read_experiment(str(self.lab)).scans.position
-        np.testing.assert_allclose(position[1][1], [0.04, -0.01, 0.01])  # the image nearest to (0.03, 0.01)
-
-    def test_stages_of_a_programme(self):
-        self.write(SETTINGS + '[[programme]]\nforce = 1\n[[programme]]\nstage = "hold"\n')
-        one = read_experiment(str(self.lab))
-        self.assertEqual((one.has_programme, one.parameters["programme.2.stage"]), (True, "hold"))
-
-    def test_problems_are_those_that_the_program_finds(self):
-        self.program('echo "mcdem: plate.csv:3: first" >&2; echo "mcdem: plate.csv:4: second" >&2; exit 2')
-        with self.assertRaises(InputError) as raised:
-            read_experiment(str(self.lab))
-        self.assertEqual(raised.exception.problems, ["plate.csv:3: first", "plate.csv:4: second"])
-
-    def test_a_folder_that_changed_after_the_check_is_an_input_error(self):
-        for damage in ({"settings": "name ="}, {"settings": "[box]\n"}, {"plate": "frame\n"}, {"plate": ""}, {"plate": PLATE + "x\n"},
-                       {"plate": PLATE.replace("unload", "up")}, {"contacts": CONTACTS.replace("floor", "roof")},
-                       {"contacts": CONTACTS.replace("1,0,floor", "9,0,floor")}, {"grains": GRAINS.replace("1,1,", "1,7,")}):
-            self.write(**({"settings": SETTINGS} | damage))
-            with self.assertRaises(InputError, msg=damage) as raised:
-                read_experiment(str(self.lab))
-            self.assertIn("lab", str(raised.exception))
+        self.lab = write_lab(self.folder)
 
     def test_references(self):
         written.write_run(self.folder / "run.h5", replicas=2)
@@ -154,6 +77,13 @@ class Commands(unittest.TestCase):
         self.assertRegex(self.printed("table", file, "--csv"), r"\nmc_dem,20(\.0+4)?,3\.5,,mc_dem,1,,1,0\n\Z")
         self.assertTrue(self.printed("compare", file, "--against", file).startswith("against mc_dem\n\nmodel "))
         self.assertIn("| MC-DEM | load   |", self.printed("table", "--markdown", file))
+
+    def test_compare_with_an_experiment(self):
+        lab = write_lab(self.folder)
+        self.assertTrue(self.printed("compare", str(self.folder / "run.h5"), "--against", str(lab)).startswith("against by hand\n\nmodel "))
+        (lab / "plate.csv").write_text(PLATE.replace("unload", "up"))
+        self.assertEqual(self.said("compare", "run.h5", "--against", "lab"),
+                         (2, "", 'mcdem: lab/plate.csv:4: phase must be one of load, unload, got "up"\n'))
 
     def test_usage_errors(self):
         for words, message in (([], "A subcommand is required"), (["nonsense"], "there is no command nonsense"),

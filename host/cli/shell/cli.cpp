@@ -94,8 +94,8 @@ int command_line(int argc, const char* const* argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version", std::string("mcdem ") + version_text);
     int exit_code = exit_done;
-    for (const auto add : {add_devices, add_validate, add_run, add_distribute, add_python_commands,
-                           add_experiment, add_challenge, add_completion})
+    for (const auto add :
+         {add_devices, add_validate, add_run, add_distribute, add_python_commands, add_completion})
         add(app, exit_code);
     add_replaced(app);
     finish_options(app);

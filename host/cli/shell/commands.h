@@ -15,10 +15,7 @@ void add_devices(CLI::App& app, int& exit_code);
 void add_validate(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_distribute(CLI::App& app, int& exit_code);
-void add_challenge(CLI::App& app, int& exit_code);
-/// Those of the program, or of its command `challenge`.
 void add_python_commands(CLI::App& app, int& exit_code);
-void add_experiment(CLI::App& app, int& exit_code);
 void add_completion(CLI::App& app, int& exit_code);
 
 /// Whether the Python package runs the command that these words begin with; its arguments are passed on

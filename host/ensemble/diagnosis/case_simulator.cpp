@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/atomic_file.h"
 #include "core/errors.h"
 #include "ensemble/diagnosis/outside_effects.h"
 #include "ensemble/make_packings.h"
@@ -105,7 +104,7 @@ std::vector<std::string> CaseSimulator::simulate(std::vector<SimulatedCase> case
     return failures;
 }
 
-void CaseSimulator::write(std::size_t k, const std::filesystem::path& folder) const {
+Recording CaseSimulator::measured(std::size_t k) const {
     const SimulatedCase& c = cases_.at(k);
     Recording recording = recordings_.at(k);
     for (const auto& [name, amplitude] : c.effects)
@@ -113,8 +112,7 @@ void CaseSimulator::write(std::size_t k, const std::filesystem::path& folder) co
             outside->change_reading(recording, amplitude);
     recording.box = stated_.replica.box;
     recording.label = c.folder;
-    remove_temporaries(folder);
-    write_experiment(folder, experiment_from(recording, model_of_case(c).instrument, c.seed), Packed::gzip);
+    return mcdem::measured(recording, model_of_case(c).instrument, c.seed);
 }
 
 }  // namespace mcdem::ensemble

@@ -1,6 +1,5 @@
 // Simulates the cases of a challenge with all their hidden effects (host/python/mcdem/challenge/make.py).
 #pragma once
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -36,14 +35,14 @@ public:
     std::size_t at_once() const;
 
     /// `Part`: scans of the first loading, or all. Returns where and why each case failed, empty if it did
-    /// not. The recordings are kept for write() until the next call.
+    /// not. The recordings are kept for measured() until the next call.
     enum class Part { loading, all };
     std::vector<std::string> simulate(std::vector<SimulatedCase> cases, Part part,
                                       const TrialOptions& options);
 
-    /// Writes the experiment of a case of the last call: its recording measured by the instrument of the
-    /// case, in the stated box, with the name of its folder.
-    void write(std::size_t k, const std::filesystem::path& folder) const;
+    /// A case of the last call as the instrument of the case reads it, in the stated box, with the name of
+    /// its folder.
+    Recording measured(std::size_t k) const;
 
 private:
     Model model_of_case(const SimulatedCase& c) const;

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "core/errors.h"
-#include "diagnose/observe/needed_to_diagnose.h"
 #include "ensemble/make_packings.h"
 #include "scene/programme/legs.h"
 #include "scene/programme/programme_text.h"
@@ -83,10 +82,6 @@ DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& measure
     if (scene.replicas.size() > 1)
         options.on_note(fmt::format("the scene has {} replicas; the first one is diagnosed: {}",
                                     scene.replicas.size(), scene.replicas.front().label));
-    std::vector<std::string> problems;
-    for (const Experiment& experiment : measured)
-        for (const std::string& needed : needed_to_diagnose(experiment)) problems.push_back(needed);
-    if (!problems.empty()) throw InputError(problems);
     DiagnosisPlan plan;
     for (const Experiment& experiment : measured)
         plan.experiments.push_back(compared_cycles(scene, experiment));

@@ -12,6 +12,7 @@ from .warn import warn_user
 if TYPE_CHECKING:
     from ._engine import Scene
     from .diagnosis.diagnose import Options
+    from .experiment.experiment import Experiment
 
 
 def diagnose(scene: "Scene", experiment: Path | Sequence[Path], folder: Path, *, candidates: Sequence[str] = (), replicates: int = 32,
@@ -26,14 +27,16 @@ def diagnose(scene: "Scene", experiment: Path | Sequence[Path], folder: Path, *,
     RuntimeError.
     """
     from .diagnosis.diagnose import Options
+    from .experiment.read import read_experiments
     from .outputs import output_folder, remove_temporaries
     from .report.present_diagnosis import completed, write_page
     options = Options(candidates=list(candidates), replicates=replicates, pairs=pairs, confirmations=confirmations, refine=refine,
                       seed=seed, library=library)
     _check(options)
+    experiments = read_experiments(folders(experiment), "experiment")
     with output_folder(folder) as out:
         remove_temporaries(out / "simulations")
-        _write(scene, folders(experiment), out, options, device, progress)
+        _write(scene, experiments, out, options, device, progress)
     diagnosis, document = completed(folder)
     if page:
         write_page(diagnosis, folder)
@@ -50,7 +53,7 @@ def _check(options: "Options") -> None:
         raise InputError(problems)
 
 
-def _write(scene: "Scene", experiments: list[str], out: pathlib.Path, options: "Options", device: str,
+def _write(scene: "Scene", experiments: "list[Experiment]", out: pathlib.Path, options: "Options", device: str,
            progress: Callable[[str, float], object] | None) -> None:
     """Writes diagnosis.json."""
     from .diagnosis.diagnose import Listener, diagnose, make_simulations
@@ -66,6 +69,6 @@ def _write(scene: "Scene", experiments: list[str], out: pathlib.Path, options: "
             warn_user(text)
 
     caller = Caller()
-    simulations = make_simulations(scene, experiments, os.path.join(out, "simulations"), options, device, "experiment", caller)
+    simulations = make_simulations(scene, experiments, os.path.join(out, "simulations"), options, device, caller)
     diagnosis = diagnose(scene, simulations, options, caller)
     replace_own(out / "diagnosis.json", DIAGNOSIS, diagnosis_json(diagnosis).encode())

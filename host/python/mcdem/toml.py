@@ -10,12 +10,12 @@ from .errors import InputError
 MAX_ITEMS = 1_000_000  # in a list; a scene has at most a MiB of text
 
 
-def toml_value(value):
+def toml_value(value: object) -> str:
     """On one line. As JSON, but in tables a key is followed by `=`, not by `:`."""
     return json.dumps(value, ensure_ascii=False, separators=(", ", " = ")).replace("\x7f", "\\u007f")
 
 
-def value_text(key, value):
+def value_text(key: str, value: object) -> str:
     """The value of a key as TOML. Raises InputError."""
     return toml_value(_plain(value, key))
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InputError
+from ..experiment.experiment import MATERIALS
 from ..number_text import shortest
 from ..observe.estimate import Estimate, mean_over_replicas
 from ..observe.levels import group_levels, level_tolerance
 from ..observe.replicas import MODEL, SEED, Replicas
 from ..observe.top_force import full_stroke, top_force_at
-from ..results.experiment import MATERIALS
 from ..results.names import ContactModel, ContainerShape, all_names, parse
 from ..results.parameters import Parameters, has_programme, keys_that_vary
 from ..results.recording import Floats

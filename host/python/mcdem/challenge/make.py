@@ -8,9 +8,13 @@ from dataclasses import dataclass, field, replace
 from .. import _engine as engine
 from ..diagnosis.effects import effects
 from ..errors import InputError, RunError
+from ..experiment.experiment import Measurement
+from ..experiment.from_run import experiment_from
+from ..experiment.write import write_experiment
 from ..files import create_whole, read_input
 from ..look import Path, is_there
 from ..outputs import make_folder_of, output_folder, remove_temporaries_of
+from ..results.engine_run import run_of
 from .case import Challenge, ChallengeCase, Hidden
 from .files import OpenCase, OpenChallenge, open_challenge_text, read_open_challenge
 from .plan import CHALLENGED_EFFECTS, ChallengeSize, Model, draw_challenge, model_of
@@ -172,7 +176,8 @@ class _Making:
         """The k-th case of those that were simulated last."""
         if failure:
             raise RunError(f"{self._challenge.cases[number].folder}: its simulation failed at {failure}")
-        self._simulator.write(k, self._folder(number))
+        recording = run_of(self._simulator.measured(k)).recordings[0]
+        write_experiment(self._folder(number), experiment_from(recording, Measurement(*self._options.measurement)), gzip=True)
 
 
 def _pairs(hidden: Sequence[Hidden]) -> list[tuple[str, float]]:

@@ -21,6 +21,9 @@ from ..diagnosis.library_origin import expect_origin
 from ..diagnosis.library_parts import expect_device, missing_parts
 from ..diagnosis.library_simulations import build_library
 from ..errors import InputError
+from ..experiment.engine_experiment import engine_experiment
+from ..experiment.experiment import Experiment
+from ..experiment.read import read_experiment
 from ..files import read_input, write_whole
 from ..look import is_there
 from ..manifest import keep_manifest, manifest_file
@@ -139,7 +142,7 @@ class ChallengeWork:
         """The library's simulations: other packings of the same kind, measured as the first case."""
         options = self._options
         return engine.Simulations.of_others(
-            self._scene, self._experiment(self._cases[0]), options.library_packings, self._folder / "simulations",
+            self._scene, engine_experiment(self._experiment(self._cases[0])), options.library_packings, self._folder / "simulations",
             candidates=list(options.candidates), replicates=options.library_replicates, pairs=options.library_pairs, seed=options.seed,
             device=options.device)
 
@@ -170,8 +173,8 @@ class ChallengeWork:
         self._library = library
         return library
 
-    def _experiment(self, case: OpenCase) -> str:
-        return os.path.join(self._options.challenge, case.folder)
+    def _experiment(self, case: OpenCase) -> Experiment:
+        return read_experiment(os.path.join(self._options.challenge, case.folder))
 
     def _how(self, candidates: Sequence[str]) -> DiagnoseOptions:
         options = self._options

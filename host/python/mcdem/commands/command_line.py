@@ -139,7 +139,7 @@ def command_of(words: Sequence[str]) -> tuple[str, Sequence[str]]:
 
 
 def module_of(command: str) -> Any:
-    return importlib.import_module("." + command.replace(" ", "_"), __package__)
+    return importlib.import_module("." + re.sub("[ -]", "_", command), __package__)
 
 
 def parser_of(command: str, module: Any) -> Parser:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .._engine import Scene, Simulations
     from ..diagnosis.diagnose import Listener, Options
     from ..diagnosis.diagnosis_types import Diagnosis
+    from ..experiment.experiment import Experiment
 
 EPILOG = """\
 The scene describes the simulation; box, plate and scans are taken from the experiment. Prints the verdict in
@@ -70,8 +71,9 @@ def run(options: argparse.Namespace) -> int:
 def _begin_parts(options: argparse.Namespace, scene: "Scene") -> Iterator[PartedWork]:
     from ..diagnosis.library_parts import LibraryParts
     from ..outputs import output_folder
+    experiments = _read(options)
     with output_folder(options.out, shared=True) as folder:
-        yield LibraryParts(_simulations(options, scene), folder, options.library)
+        yield LibraryParts(_simulations(options, scene, experiments), folder, options.library)
 
 
 def _run_alone(options: argparse.Namespace, scene: "Scene") -> int:
@@ -79,6 +81,7 @@ def _run_alone(options: argparse.Namespace, scene: "Scene") -> int:
     from ..outputs import DIAGNOSIS, PAGE, expect_replaceable, make_folder_of, output_folder, remove_temporaries, replace_own
     from ..report.draw import expect_replaceable_figures
     from ..report.present_diagnosis import present
+    experiments = _read(options)
     with output_folder(options.out) as folder:
         remove_temporaries(folder / "simulations")
         if options.library:
@@ -86,13 +89,13 @@ def _run_alone(options: argparse.Namespace, scene: "Scene") -> int:
         for name, kind in (("diagnosis.json", DIAGNOSIS), ("diagnosis.html", PAGE)):
             expect_replaceable(folder / name, kind)
         expect_replaceable_figures(folder, ("where", "which", "how_far"))
-        diagnosis = _diagnose(options, scene)
+        diagnosis = _diagnose(options, scene, experiments)
         replace_own(folder / "diagnosis.json", DIAGNOSIS, diagnosis_json(diagnosis).encode())
         present(options.out)
     return 0
 
 
-def _diagnose(options: argparse.Namespace, scene: "Scene") -> "Diagnosis":
+def _diagnose(options: argparse.Namespace, scene: "Scene", experiments: "Sequence[Experiment]") -> "Diagnosis":
     from ..diagnosis.diagnose import Listener, diagnose
 
     class Teller(Listener):
@@ -104,10 +107,9 @@ def _diagnose(options: argparse.Namespace, scene: "Scene") -> "Diagnosis":
             say(text)
 
     with interruptible(), StageProgress() as stages:
-        simulations = _simulations(options, scene, Teller())
-        experiments = simulations.facts()["names"]
-        say(f"{scene.name} against {', '.join(experiments)} on {simulations.device_name}")
-        _warn_of_odd_data(options.experiments, experiments)
+        simulations = _simulations(options, scene, experiments, Teller())
+        say(f"{scene.name} against {', '.join(one.name for one in experiments)} on {simulations.device_name}")
+        _warn_of_odd_data(experiments)
         return diagnose(scene, simulations, _diagnosis_options(options), Teller())
 
 
@@ -117,15 +119,22 @@ def _diagnosis_options(options: argparse.Namespace) -> "Options":
                    confirmations=options.confirmations, refine=options.refine, seed=options.seed, library=options.library)
 
 
-def _simulations(options: argparse.Namespace, scene: "Scene", listener: "Listener | None" = None) -> "Simulations":
+def _read(options: argparse.Namespace) -> "list[Experiment]":
+    from ..experiment.read import read_experiments
+    return read_experiments(options.experiments, "--experiment")
+
+
+def _simulations(options: argparse.Namespace, scene: "Scene", experiments: "Sequence[Experiment]",
+                 listener: "Listener | None" = None) -> "Simulations":
     from ..diagnosis.diagnose import make_simulations
-    return make_simulations(scene, options.experiments, os.path.join(options.out, "simulations"), _diagnosis_options(options),
-                            options.device, "--experiment", listener)
+    return make_simulations(scene, experiments, os.path.join(options.out, "simulations"), _diagnosis_options(options), options.device,
+                            listener)
 
 
-def _warn_of_odd_data(folders: Sequence[str], experiments: Sequence[str]) -> None:
-    from .. import _engine
-    for folder, experiment in zip(folders, experiments, strict=True):
-        if odd := _engine.odd_data(folder):
+def _warn_of_odd_data(experiments: "Sequence[Experiment]") -> None:
+    from ..experiment.check import Severity, check_experiment
+    for experiment in experiments:
+        odd = [finding.text for finding in check_experiment(experiment) if finding.severity == Severity.odd]
+        if odd:
             more = f"; and {len(odd) - 1} more" if len(odd) > 1 else ""
-            say(f"{experiment} has suspicious data: {odd[0]}{more}; `mcdem experiment check` lists them")
+            say(f"{experiment.name} has suspicious data: {odd[0]}{more}; `mcdem experiment check` lists them")

@@ -4,6 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from .. import _engine as engine
+from ..errors import InputError
+from ..experiment.engine_experiment import engine_experiment
+from ..experiment.experiment import Experiment
+from ..experiment.needed import needed_to_diagnose
 from ..look import Path
 from ..number_text import shortest
 from ..results.engine_run import run_of
@@ -59,15 +63,17 @@ class Listener:
         """The numbers on which the verdict is based."""
 
 
-def make_simulations(scene: engine.Scene, experiments: Sequence[Path], store: Path, options: Options, device: str = "",
-                     option: str = "experiment", listener: Listener | None = None) -> engine.Simulations:
+def make_simulations(scene: engine.Scene, experiments: Sequence[Experiment], store: Path, options: Options, device: str = "",
+                     listener: Listener | None = None) -> engine.Simulations:
     """The simulations of a diagnosis of one experiment, or of several packings of one; `store`: folder that keeps them.
 
-    Raises InputError, with the name of the `option`, if the experiments have too few data or are not alike.
+    Raises InputError if the experiments have too few data or are not alike.
     """
-    return engine.Simulations(scene, list(experiments), store, candidates=list(options.candidates), replicates=options.replicates,
-                              pairs=options.pairs, seed=options.seed, recordings=options.paper_metrics, device=device, option=option,
-                              note=(listener or Listener()).note)
+    if problems := [needed for experiment in experiments for needed in needed_to_diagnose(experiment)]:
+        raise InputError(problems)
+    return engine.Simulations(scene, [engine_experiment(experiment) for experiment in experiments], store,
+                              candidates=list(options.candidates), replicates=options.replicates, pairs=options.pairs,
+                              seed=options.seed, recordings=options.paper_metrics, device=device, note=(listener or Listener()).note)
 
 
 def diagnose(scene: engine.Scene, simulations: engine.Simulations, options: Options, listener: Listener | None = None) -> Diagnosis:

@@ -7,12 +7,14 @@ import numpy as np
 import pandas as pd
 
 from ..files import write_whole
+from ..look import Path
+from ..number_text import shortest
+from ..problems import Problems
 from .boxes import check_boxes
 from .contacts import import_contacts
 from .grains import import_grains
 from .mapping import WALLS
 from .plate import PlateRows, check_heights, import_plate
-from .problems import Problems, number_text
 from .rows import of_role
 
 # For the two sides of a contact: largest difference over the larger force; weak forces over the largest one of the frame.
@@ -77,7 +79,7 @@ class _Assembly:
     def place_grains(self, by):
         def wrong(frame, topic, what):
             rows, first = grains.where[frame]
-            rows.problem_once(topic, first, f"frame {number_text(grains.keys[frame])} must {what} in the mapping")
+            rows.problem_once(topic, first, f"frame {shortest(grains.keys[frame])} must {what} in the mapping")
 
         grains, frames, rows = self.grains, len(self.grains.keys), len(self.plate)
         grains.place(by if by in ("order", "rows", "nearest") else "plate", self.plate)
@@ -104,7 +106,7 @@ class _Assembly:
         frames = import_contacts(table, self.grains, self.problems)
         scans = self.grains.plate_rows_of(by, frames.keys)
         for i in np.flatnonzero(scans[frames.frame] < 0)[:1]:
-            key = number_text(frames.keys[frames.frame[i]])
+            key = shortest(frames.keys[frames.frame[i]])
             whose = "grains' frames" if by == "grains" else "plate's rows"
             frames.rows.problem_once("frame", frames.row[i], f"frame {key} must be one of the {whose}, got none like it: see frame and "
                                      "frames_by in the mapping")
@@ -191,7 +193,7 @@ def import_tables(tables, known):
     return _Assembly(tables, known).run()
 
 
-def write_tables(imported, folder, packed=False):
+def write_tables(imported: Imported, folder: Path, packed: bool = False) -> None:
     """Writes a table if it has rows, with the shortest digits that give the same numbers when read; flushes it to disk."""
     for name in ("plate", "grains", "contacts"):
         table = getattr(imported, name)

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import InputError
+from ..problems import quoted, to_number
 from .mapping import signed_column
-from .problems import quoted, to_number
 
 # Of bounds with six digits, as LIGGGHTS writes them (%g): half a unit of the last digit of both, and of the experiment's number.
 ROUNDING = 1e-5

@@ -2,8 +2,9 @@
 import numpy as np
 import pandas as pd
 
+from ..number_text import shortest
+from ..problems import is_whole, quoted
 from .mapping import BY_DIRECTION, WALLS
-from .problems import is_whole, number_text, quoted
 from .rows import Rows, whole_entry
 
 # In addition to grains >= 0 and walls -1 to -6: wall to be determined by the force; unknown partner; wall of a reversed axis.
@@ -35,7 +36,7 @@ class _Reader:
     def side_of(self, key, name):
         """A grain, a wall, SOME_WALL, REVERSED or NOBODY. `name` is a number or a text."""
         grain = int(self.grains.number_of(int(name) + self.offset)) if isinstance(name, float) and is_whole(name) else -1
-        wall = self.map.walls.get(number_text(name) if isinstance(name, float) else name)
+        wall = self.map.walls.get(shortest(name) if isinstance(name, float) else name)
         if wall and (key == "partner" or grain < 0):  # numbers of meshes may equal those of grains
             return SOME_WALL if wall.word == BY_DIRECTION else wall_partner(wall.word)
         if name in WALLS:
@@ -95,7 +96,7 @@ class _Reader:
         starts = self.rows.frames()[:-1]
         keys = self.rows.key[starts]
         for place in np.flatnonzero(pd.Series(keys).duplicated())[:1]:
-            self.rows.problem_once("order", starts[place], f"the rows of frame {number_text(keys[place])} must follow one another, got more "
+            self.rows.problem_once("order", starts[place], f"the rows of frame {shortest(keys[place])} must follow one another, got more "
                                    "behind others: sort them")
         frames = ContactFrames(keys)
         frame = np.searchsorted(starts, np.arange(len(self.rows)), "right") - 1

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..errors import InputError
 from ..files import temporary_folder
+from ..problems import quoted, to_number
 from .boxes import data_box, dump_box, xyz_box
-from .problems import quoted, to_number
 from .text import Form, numbers_of
 
 ITEM = "ITEM: "

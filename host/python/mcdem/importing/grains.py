@@ -1,8 +1,8 @@
 """Grains by frame, complete and ordered by id."""
 import numpy as np
 
+from ..number_text import shortest
 from .mapping import SIZE_KEYS, signed_column
-from .problems import number_text
 from .rows import FrameIndex, Rows, whole_entry
 
 
@@ -72,7 +72,7 @@ def _read_table(table, frames, problems):
     size = rows.number(size_key, wanted) if size_key in rows else np.full(len(rows), mapped.number(size_key))
     ids = rows.whole_number("grain") if "grain" in rows else np.zeros(len(rows))
     for i in np.flatnonzero((size <= 0) & wanted)[:1]:
-        rows.problem_once("size", i, f"{size_key} must be > 0, got {number_text(size[i])}")
+        rows.problem_once("size", i, f"{size_key} must be > 0, got {shortest(size[i])}")
     whole = wanted & np.isfinite(centres).all(axis=1) & np.isfinite(size) & np.isfinite(ids)
     centres = unit * centres - frames.origin
     diameter = unit * (2 * size if size_key == "radius" else np.cbrt(6 * size / np.pi) if size_key == "volume" else size)
@@ -88,7 +88,7 @@ def _read_table(table, frames, problems):
 def _add_frame(frames, rows, mine, ids, centres, diameter):
     """The rows `mine` in the order of the ids."""
     key = rows.key[mine[0]]
-    shown, twice = number_text(key), np.flatnonzero(np.diff(ids) == 0)
+    shown, twice = shortest(key), np.flatnonzero(np.diff(ids) == 0)
     if len(twice):
         rows.problem_once("twice", mine[twice[0] + 1], f"each grain must be there once in frame {shown}, got {ids[twice[0]]} again: "
                           "see frame in the mapping")

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import InputError
+from ..problems import Problems
 from .assemble import import_grains
 from .grains import GrainFrames
 from .guess_contacts import guess_contact_meaning
@@ -16,7 +17,6 @@ from .guess_plate import guess_plate_units
 from .guess_values import guess_contacts_by_values, guess_grains_by_values, guess_plate_by_values
 from .mapping import UNCLEAR, Guess, MappedTable, columns_of, find_key, unused_columns, must_be_stated, signed_column
 from .plate import import_plate
-from .problems import Problems
 from .rows import ImportTable, of_role
 from .tables import read_table, read_tables
 

@@ -1,12 +1,12 @@
 """Guesses the meaning of a table of contacts: grains and walls, sides of the forces, units."""
 import numpy as np
 
+from ..problems import Problems
 from .contacts import import_contacts
 from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
 from .guess_walls import guess_walls, set_walls, unknown_partners
 from .mapping import UNCLEAR, guess, negated
 from .names import FORCES
-from .problems import Problems
 
 MAX_ROWS = 200_000  # maximum number of rows used for a guess
 NEAR = 1.2  # of the sum of radii: touching, including measurement errors

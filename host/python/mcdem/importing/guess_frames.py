@@ -3,9 +3,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..problems import Problems
 from .mapping import UNCLEAR, guess
 from .names import COUNTED, TIMES, ColumnName, column_name, columns_by_key
-from .problems import Problems
 from .rows import FrameIndex, Rows, of_role
 
 

@@ -1,11 +1,12 @@
 """Guesses unit, origin, size and upward direction of the tables of grains."""
 import numpy as np
 
+from ..number_text import shortest
+from ..problems import Problems
 from .assemble import import_grains
 from .guess_names import program_of
 from .mapping import SIZE_KEYS, UNCLEAR, guess
 from .names import LENGTHS, DOWNWARDS, VOXEL, column_name
-from .problems import Problems, number_text
 from .rows import of_role
 
 
@@ -97,7 +98,7 @@ def state_voxel_size(mapped, known, width=0):
     if mapped.word("length_unit") != VOXEL:
         return
     if known.voxel_size > 0:
-        mapped["voxel_size"] = guess(number_text(known.voxel_size), "sure", "--voxel-size says so")
+        mapped["voxel_size"] = guess(shortest(known.voxel_size), "sure", "--voxel-size says so")
     else:
         fills = known.box[0] > 0 and width > 0
         mapped["voxel_size"] = guess(f"{known.box[0] / width:.4g}" if fills else "1", UNCLEAR, "--voxel-size would tell"

@@ -1,13 +1,13 @@
 """Guesses units and sign of the plate's table: its position from the grains below it, its force from their forces on it."""
 import numpy as np
 
+from ..problems import Problems
 from .contacts import import_contacts, wall_partner
 from .guess_contacts import ROUGH, decide_force_unit, hertz_force
 from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
 from .mapping import UNCLEAR, guess, signed_column
 from .names import LENGTHS
 from .plate import import_plate
-from .problems import Problems
 from .rows import of_role
 
 

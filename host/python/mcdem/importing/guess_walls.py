@@ -1,10 +1,10 @@
 """Guesses which partners of contacts are walls, and which walls."""
 import numpy as np
 
+from ..number_text import shortest
 from .contacts import wall_partner
 from .mapping import BY_DIRECTION, UNCLEAR, WALLS, guess
 from .names import column_name
-from .problems import number_text
 
 NEAR = 1.3  # of a radius: at the wall, including measurement errors
 NOTHING = {"", "-", "--", "?", "na", "n/a", "#n/a", "nan", "+nan", "-nan", "null", "none"}  # not a wall
@@ -23,7 +23,7 @@ def unknown_partners(table, grains, offset, most=None, keys=("grain", "partner")
             numbers = part.numbers(column)[:most]
             texts = {part.text(row, column) for row in np.flatnonzero(np.isnan(numbers))}
             numbers = numbers[(grains.number_of(numbers + offset) < 0) & (np.abs(numbers) < 2e9)]
-            found |= {*map(number_text, np.unique(numbers)[:20])} | {text for text in sorted(texts)[:20] if text.lower() not in NOTHING}
+            found |= {*map(shortest, np.unique(numbers)[:20])} | {text for text in sorted(texts)[:20] if text.lower() not in NOTHING}
     return sorted(found - {*WALLS})[:20]
 
 
@@ -43,7 +43,7 @@ def _names_of(frames, walls, contacts):
     for key in ("grain", "partner"):
         numbers = rows.number(key, np.zeros(len(rows), bool))
         for i, row in enumerate(frames.row[contacts]):
-            name = number_text(numbers[row]) if np.isfinite(numbers[row]) else rows.text(row, key)
+            name = shortest(numbers[row]) if np.isfinite(numbers[row]) else rows.text(row, key)
             names[i] = name if name in walls else names[i]
     return names
 

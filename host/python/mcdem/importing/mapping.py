@@ -3,9 +3,9 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from ..problems import to_number
 from ..toml import toml_value
 from .names import FORCES, LENGTH_WORDS, LENGTHS, VOXEL
-from .problems import to_number
 from .text import Form
 
 WALLS = ["x_min", "x_max", "y_min", "y_max", "floor", "plate"]

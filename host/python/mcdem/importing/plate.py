@@ -1,9 +1,10 @@
 """The plate's table: height and force by row; phases and cycles from reversals if there are no columns for them."""
 import numpy as np
 
+from ..number_text import shortest
+from ..problems import quoted
 from .mapping import signed_column
 from .names import TIMES, column_name
-from .problems import number_text, quoted
 from .rows import FrameIndex, Rows
 
 TURN = 0.01  # of the stroke: smaller reversals are noise
@@ -88,7 +89,7 @@ def import_plate(table, start, problems, programme=False):
     force_unit = mapped.force_factor() * (-1 if mapped.word("force_sign") == "-" else 1)
     plate = PlateRows(z if height == "plate_z" else start - z, force_unit * rows.number("top_force"), keys, rows)
     for i in 1 + np.flatnonzero(~(np.diff(keys) > 0))[:1]:
-        rows.problem_once("order", i, f"frame must rise from row to row, got {number_text(keys[i])} after {number_text(keys[i - 1])}: "
+        rows.problem_once("order", i, f"frame must rise from row to row, got {shortest(keys[i])} after {shortest(keys[i - 1])}: "
                           "repair the table, or leave frame out of the mapping where frames_by is order")
     if programme:
         plate.time = rows.number("time") * TIMES.get(column_name(mapped.word("time")).unit, 1)

@@ -6,8 +6,8 @@ import tomllib
 from ..errors import InputError
 from ..files import read_whole
 from ..look import is_file, is_there
+from ..problems import Problems, quoted, to_number
 from .mapping import BY_DIRECTION, KEYS, WALLS, Guess, Key, MappedTable, find_key, meaning_of, must_be_stated
-from .problems import Problems, quoted, to_number
 from .text import Form
 
 LARGEST = 1_000_000  # bytes

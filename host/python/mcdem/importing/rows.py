@@ -5,9 +5,10 @@ import re
 import numpy as np
 import pandas as pd
 
+from ..number_text import shortest
+from ..problems import is_whole, quoted
 from .mapping import columns_of, signed_column
 from .names import TIMES, column_name, other_quantity
-from .problems import is_whole, number_text, quoted
 
 
 class ImportTable:
@@ -146,7 +147,7 @@ class Rows:
     def whole_number(self, key):
         values = self.number(key)
         for i in np.flatnonzero(np.isfinite(values) & ~((np.abs(values) <= 2e9) & (values == np.round(values))))[:20]:
-            self.problem(i, f"{key} must be a whole number, got {number_text(values[i])}")
+            self.problem(i, f"{key} must be a whole number, got {shortest(values[i])}")
             values[i] = np.nan
         return values
 
@@ -158,10 +159,8 @@ class Rows:
 
     def problem_once(self, topic, i, what):
         """Adds only one problem for each topic and file: a column in millimetres is one problem, not one for each line."""
-        topic = self.parts[self.part[i]].file + topic
-        if topic not in self.problems.told:
-            self.problems.told.add(topic)
-            self.problem(i, what)
+        part = self.parts[self.part[i]]
+        self.problems.add_once(part.file + topic, part.where(self.row[i]), what)
 
     def frames(self):
         """First row of each frame, and the end of the last one: a frame is a sequence of rows with the same key."""

@@ -7,8 +7,9 @@ import numpy as np
 
 from ..errors import InputError
 from ..look import is_file, is_there
+from ..number_text import shortest
+from ..problems import Problems
 from . import formats
-from .problems import Problems, number_text
 from .text import Form, cut, numbers_of, parse_text
 
 LARGEST = 1 << 30  # maximum size of a table in bytes, uncompressed
@@ -63,7 +64,7 @@ class Table:
 
     def text(self, row, column):
         if not self.lines:
-            return number_text(self.numbers(column)[row])
+            return shortest(self.numbers(column)[row])
         return cut(self.lines[self.line_of[row] - 1], self.form.separator)[column]
 
     def find(self, name):

@@ -9,7 +9,7 @@ import re
 from collections import Counter
 from typing import NamedTuple
 
-from .problems import quoted, to_number
+from ..problems import quoted, to_number
 
 SAMPLED_LINES = 100
 MAX_COLUMNS = 10_000

@@ -49,8 +49,8 @@ def read_reference(path: Path, discard: int = 0, contacts: bool = False) -> Run:
     folder = os.fspath(path)
     if not _is_measured(folder):
         return read_run(folder, contacts=contacts)
-    from ..results.experiment import read_experiment
-    recording = read_experiment(folder)
+    from ..experiment.read import read_experiment
+    recording = read_experiment(folder).recording
     recording = replace(recording, parameters=recording.parameters | {DISCARD: str(discard)})
     return Run(recording.label, "", "", "", "", (recording,))
 

@@ -1,0 +1,149 @@
+"""mcdem experiment import: an experiment from the tables of a laboratory or another program."""
+import argparse
+import math
+import os
+import pathlib
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NoReturn
+
+from ..errors import InputError
+from ..problems import to_number
+from ..program import say
+from .command_line import output_path
+
+if TYPE_CHECKING:
+    from ..experiment.experiment import Experiment
+    from ..experiment.settings import Settings
+    from ..importing.assemble import Imported, Known
+    from ..importing.import_files import Attempt
+    from ..problems import Problems
+
+EPILOG = """\
+Without --mapping the meaning and units of the columns are guessed, reported and written to
+DIR/mapping.toml. If a guess is uncertain, nothing is imported (exit code 2): correct the lines with a
+question mark and repeat the import with --mapping. Tables given with --mapping replace those it names, so one
+mapping serves all experiments of a laboratory. The box must be given.
+z points upwards; in the mapping a minus sign before a column's name reverses it: z = "-depth".
+Examples:
+  mcdem experiment import data/plate.csv data/grains.csv data/contacts.csv --set 'box.size=[0.165, 0.166]' \\
+      --set grains.youngs_modulus=23300 --out out/lab
+  mcdem experiment import --mapping out/lab/mapping.toml --metadata data/known.toml --out out/lab
+  mcdem experiment import data/second/* --mapping out/lab/mapping.toml --metadata data/known.toml --out out/second"""
+
+LARGEST_VOXEL = 1  # [m]
+LARGEST_TEXT = 1_000_000  # bytes of the metadata
+MAPPING = "mapping.toml"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("TABLE", nargs="*",
+                        help="Tables of the plate, the grains and the contacts: text, dumps of LAMMPS and LIGGGHTS, text and VTK of Yade, "
+                             "extended xyz, regions of scikit-image, trackpy's and SPAM's tables; any may be packed with gzip")
+    parser.add_argument("--out", metavar="DIR", type=output_path, required=True, help="Folder to create")
+    parser.add_argument("--mapping", metavar="FILE", default="",
+                        help="Meaning of the columns: the mapping.toml written by an import without this option, corrected by hand")
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="overrides",
+                        help="Set a key of experiment.toml that the tables do not contain, such as 'box.size=[0.165, 0.166]'; may be "
+                             "repeated")
+    parser.add_argument("--metadata", metavar="FILE", default="", help="The same from a file in the format of experiment.toml")
+    parser.add_argument("--voxel-size", metavar="LENGTH", type=_voxel_size,
+                        help="Edge length of a voxel [m], for tables of images in voxels")
+    parser.add_argument("--name", metavar="TEXT", default="",
+                        help="Name of the experiment (default: that of the metadata, or of the folder)")
+    parser.add_argument("--gzip", action="store_true", help="Compress the tables with gzip")
+
+
+def _voxel_size(text: str) -> float:
+    value = to_number(text)
+    if value is None or not 0 < value <= LARGEST_VOXEL:
+        raise argparse.ArgumentTypeError(f"must be > 0 and <= {LARGEST_VOXEL} [m], got {text}")
+    return value
+
+
+def run(options: argparse.Namespace) -> int:
+    from ..experiment.publish import expect_free, work_folder
+    from ..problems import Problems
+    expect_free(options.out)
+    problems = Problems()
+    settings = _settings(options, problems)
+    with work_folder(options.out) as folder:
+        experiment = _import(options, settings, problems, folder / "experiment")
+    scans = experiment.recording.scans
+    measured, contacts = sum(len(one) > 0 for one in scans.position), sum(map(len, scans.contacts))
+    print(f"{options.out}: {len(scans)} frames, {len(experiment.recording.diameter)} grains in {measured} of them, {contacts} contacts")
+    return 0
+
+
+def _settings(options: argparse.Namespace, problems: "Problems") -> "Settings":
+    """Values that are not in the tables; their problems are reported together with all others."""
+    from ..experiment.settings import parse_settings
+    text = _bytes_of(options.metadata) if options.metadata else b""
+    settings = parse_settings(text, options.metadata or "--set", options.overrides, problems)
+    return replace(settings, name=options.name or settings.name or os.path.basename(os.path.abspath(options.out)))
+
+
+def _bytes_of(file: str) -> bytes:
+    from ..files import read_input
+    from ..look import is_file, is_there
+    if not is_file(file) or os.stat(file).st_size > LARGEST_TEXT:
+        raise InputError(f"{file}: must be a text of at most 1 MB, got {'something else' if is_there(file) else 'no such file'}")
+    return read_input(file)
+
+
+def _known(settings: "Settings", voxel_size: float | None) -> "Known":
+    """What the import knows without the tables; where a value is missing, its default."""
+    from ..importing.assemble import Known
+    from ..results.parameters import has_programme
+    known = {"youngs_modulus": settings.materials.get("grains.youngs_modulus"),
+             "poisson_ratio": settings.materials.get("grains.poisson_ratio"), "voxel_size": voxel_size}
+    return Known(box=(settings.box.size_x, settings.box.size_y), shape=settings.box.shape, plate_start=settings.plate_start,
+                 programme=has_programme(settings.parameters), **{name: value for name, value in known.items() if value is not None})
+
+
+def _import(options: argparse.Namespace, settings: "Settings", problems: "Problems", work: pathlib.Path) -> "Experiment":
+    """Makes the experiment in the new folder `work` and moves it to the folder of --out."""
+    from ..experiment.publish import publish, read_back
+    from ..importing.import_files import import_files
+    attempt = import_files(options.TABLE, _known(settings, options.voxel_size), os.path.join(options.out, MAPPING), options.mapping,
+                           problems.lines())
+    if not attempt.imported:
+        _refuse(options, attempt, attempt.problems, attempt.has_wrong_rows)
+    _write(work, attempt.mapping, attempt.imported, settings, options.gzip)
+    try:
+        experiment = read_back(work, options.out, "with this mapping the tables do not give a valid experiment:")
+        publish(work, options.out)
+    except InputError as error:
+        if not options.mapping:
+            _refuse(options, attempt, error.problems, True)
+        raise
+    for note in attempt.imported.notes:
+        say(note)
+    return experiment
+
+
+def _write(work: pathlib.Path, mapping: str, imported: "Imported", settings: "Settings", gzip: bool) -> None:
+    """All files of the experiment."""
+    from ..experiment.settings import settings_text
+    from ..experiment.write import SETTINGS_FILE, write_files
+    from ..importing.assemble import write_tables
+    if math.isnan(settings.plate_start):
+        settings = replace(settings, plate_start=imported.plate_start)
+    work.mkdir()
+    write_tables(imported, work, gzip)
+    write_files(work, {MAPPING: mapping.encode(errors="surrogateescape"),
+                       SETTINGS_FILE: settings_text(settings).encode(errors="surrogateescape")})
+
+
+def _refuse(options: argparse.Namespace, attempt: "Attempt", problems: Sequence[str], wrong_rows: bool) -> NoReturn:
+    """Reports all problems, with the mapping for the user to correct. Raises InputError."""
+    from ..files import create_whole
+    from ..outputs import make_folder
+    file = os.path.join(options.out, MAPPING)
+    make_folder(options.out)
+    if not create_whole(file, attempt.mapping.encode(errors="surrogateescape")):
+        raise InputError(f"{file}: another program has just written it")
+    what = (f"repair the tables, remove {file} and import again; or correct the wrong entries of {file} and import with --mapping {file}"
+            if wrong_rows else f"correct the entries of {file} that begin with a question mark, remove the marks, and import again with "
+            f"--mapping {file}")
+    raise InputError([*problems, f"nothing is imported: {what}"])

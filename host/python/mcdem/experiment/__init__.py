@@ -1,0 +1,1 @@
+"""Experiment folders (host/experiment/README.md): reading, checking and writing measured compressions."""

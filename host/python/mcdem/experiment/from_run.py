@@ -1,0 +1,157 @@
+"""A simulation as an experiment: what an instrument reads of one replica of a run (host/experiment/README.md)."""
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from ..errors import InputError
+from ..number_text import shortest
+from ..problems import to_number
+from ..program import say
+from ..results.engine_run import run_of
+from ..results.parameters import value_of
+from ..results.recording import NO_CONTACTS, NO_VECTORS, Recording, Run
+from .experiment import MATERIALS, Experiment, Measurement
+from .publish import expect_free, publish, read_back, work_folder
+from .write import SUMS_FILE, experiment_files, sums_text, write_files
+
+PART_OF_A_GRAIN = 8  # errors are at most this part of the smallest diameter: with larger ones the result could not be read back
+
+
+@dataclass(frozen=True)
+class Options:
+    run: str  # result folder or file
+    out: str
+    replica: str  # label or number; empty: the only one
+    name: str  # of the experiment; empty: that of the run and the replica
+    instrument: Mapping[str, float]  # fields of Measurement, and of Instrument (host/experiment/instrument.h) by name
+    uncertainty: Sequence[str]  # "grains.youngs_modulus=500" [unit of the key]
+    seed: int  # of the noise
+    gzip: bool
+
+    @property
+    def measurement(self) -> Measurement:
+        return Measurement(*(self.instrument[field.name] for field in fields(Measurement)))
+
+
+def write_from_run(options: Options) -> str:
+    """Writes the experiment and returns a summary. Raises InputError, RunError, OSError."""
+    from .. import _engine
+    expect_free(options.out)
+    uncertainty = read_uncertainty(options.uncertainty)
+    run = _engine.read(options.run)
+    try:
+        replica, truth = _chosen_recording(run_of(run), options)
+    except UnicodeDecodeError as error:
+        raise InputError(f"{options.run}: holds a text that is not UTF-8 ({error.reason})") from error
+    expect_measurable(truth, options)
+    seen = run_of(_engine.measured(run, replica, options.instrument, options.seed)).recordings[0]
+    measured = experiment_from(replace(seen, label=truth.label), options.measurement)
+    experiment = replace(measured, uncertainty=uncertainty, name=options.name or measured.name)
+    _write(experiment, options)
+    contacts, listed = (sum(map(len, one.scans.contacts)) for one in (truth, experiment.recording))
+    return (f"{options.out}: {len(truth.scans)} frames, {len(experiment.recording.diameter)} grains, {listed} of {contacts} contacts "
+            "seen")
+
+
+def experiment_from(seen: Recording, measurement: Measurement) -> Experiment:
+    """A recording as an instrument reads it, as an experiment with its label. Materials are taken from its parameters.
+
+    Without positions in frame 0 only the plate remains, because grains and contacts have no identity. Raises InputError for a cell.
+    """
+    if seen.box.is_cell:
+        raise InputError(f"{seen.label}: container.shape must be one with a plate, got {seen.box.shape}: an experiment is a compression "
+                         "by a plate")
+    stated = {key: to_number(value_of(seen.parameters, key)) for key in MATERIALS}
+    materials = {key: value for key, value in stated.items() if value is not None}
+    scans = seen.scans
+    if not (len(scans) and len(scans.position[0])):
+        scans = replace(scans, position=(NO_VECTORS,) * len(scans), contacts=(NO_CONTACTS,) * len(scans))
+        seen = replace(seen, diameter=np.zeros(0), scans=scans)
+    return Experiment(seen.label, seen, materials, measurement=measurement)
+
+
+def chosen_replica(run: Run, options: Options) -> int:
+    """The number of a recording. Raises InputError."""
+    labels, wanted = [recording.label for recording in run.recordings], options.replica
+    if wanted in labels:
+        return labels.index(wanted)
+    if re.fullmatch(r"\+?\d{1,9}", wanted, re.ASCII) and int(wanted) < len(labels):
+        return int(wanted)
+    if not wanted and len(labels) == 1:
+        return 0
+    known = ", ".join(f"{number}: {label}" if label else f"{number}" for number, label in enumerate(labels))
+    raise InputError(f"--replica: must be a number or label of {options.run}'s replicas ({known}); got {wanted or 'none'}")
+
+
+def read_uncertainty(words: Sequence[str]) -> dict[str, float]:
+    """From KEY=SIGMA. Raises InputError."""
+    found, problems = dict[str, float](), list[str]()
+    for word in words:
+        key, _, number = word.partition("=")
+        sigma = to_number(number)
+        if key not in MATERIALS or sigma is None or sigma < 0:
+            problems.append(f"--uncertainty: must be KEY=SIGMA with a key such as {MATERIALS[0]}, got {word}")
+        else:
+            found[key] = sigma
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+def expect_measurable(truth: Recording, options: Options) -> None:
+    """Raises InputError where an experiment of this recording could not be read back, and says what it will lack."""
+    limit = truth.diameter.min() / PART_OF_A_GRAIN
+    errors = {"--position-error": options.measurement.position_error, "--diameter-error": options.measurement.diameter_error}
+    problems = [f"{option}: must be at most an eighth of the smallest diameter, {limit:.3g} m, got {shortest(error)}"
+                for option, error in errors.items() if error > limit]
+    if problems:
+        raise InputError(problems)
+    if truth.has_programme and not truth.box.is_cell:  # cells are refused later
+        _expect_all_scans(truth)
+    if truth.species_names:
+        raise InputError("the run must be one of grains of one material, got one of [[species]]: experiments state one material only")
+    if not len(truth.scans.position[0]):
+        say("the run holds no positions of frame 0: grains.csv and contacts.csv are left out. Run with output.positions = true")
+    elif truth.displacement[0] > 0:
+        say(f"frame 0 is {1e3 * truth.displacement[0]:.3g} mm below the plate's start, not the packing at rest that a simulation should "
+            "start from. Run with protocol.scan_at_start = true")
+
+
+def _expect_all_scans(truth: Recording) -> None:
+    """Each frame of an experiment with a programme is a scan of its stages."""
+    from .. import _engine
+    scans, places = len(truth.scans), len(_engine.scan_places(truth.parameters, truth.plate_start))  # plus one at rest
+    if scans != places + 1:
+        raise InputError(f"the run must have the {places} scans of its programme and one before them, at rest, got {scans}: run it to its "
+                         "end, with protocol.scan_at_start = true")
+
+
+def _chosen_recording(run: Run, options: Options) -> tuple[int, Recording]:
+    """The number of a recording, and the recording with its run's name in its label. Raises InputError."""
+    number = chosen_replica(run, options)
+    found = run.recordings[number]
+    truth, scans = replace(found, label=run.name + (f", {found.label}" if found.label else "")), found.scans
+    if not len(truth.diameter):
+        raise InputError(f"{options.run}: holds no grains of this replica")
+    if not len(scans):
+        raise InputError(f"{options.run}: holds no scan of this replica")
+    for frame in scans.frame[~(np.isfinite(scans.top_force) & np.isfinite(scans.plate_z))].tolist():
+        raise InputError(f"{options.run}: frame {frame} of this replica has a top force or plate position that is not a number")
+    if truth.failure:
+        say(f"{truth.label} stopped early: {truth.failure.cause}")
+    return number, truth
+
+
+def _write(experiment: Experiment, options: Options) -> None:
+    """Into a folder of its own first, so that a killed call leaves no part of an experiment."""
+    files = experiment_files(experiment, options.gzip)
+    with work_folder(options.out) as folder:
+        work = folder / "experiment"
+        work.mkdir()
+        write_files(work, {SUMS_FILE: sums_text(files).encode(), **files})
+        # A run that was changed by others, or an instrument with extreme errors, may give data that no reader accepts.
+        read_back(work, options.out, f"{options.run}: does not give a valid experiment, so nothing is written. Run the scene again, or "
+                  "lower the measurement errors. Problems:")
+        publish(work, options.out)

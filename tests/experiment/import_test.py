@@ -1,0 +1,199 @@
+"""`mcdem experiment import`: a run, written in the format of a laboratory and of another program, is imported as from-run converts it.
+import_test.py"""
+import gzip
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+from small_run import AT_REST, STAGES, CommandCase, mcdem_command
+
+from mcdem.experiment.read import read_experiment
+from mcdem.results.names import Phase
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "importing"))
+from lab import Contact, Scan, Style, Truth, dump_of_contacts, dump_of_grains, lab_contacts, lab_grains, lab_plate  # noqa: E402
+
+PERFECT = ["--position-error", "0", "--diameter-error", "0", "--force-error", "0", "--force-threshold", "0"]
+IMPORT = ["experiment", "import"]
+LAB = ["contacts.csv", "plate.csv", "grains.csv"]
+BOX, MATERIALS = ["--set", "box.size=[0.06, 0.06]"], ["--set", "grains.youngs_modulus=23300", "--set", "grains.poisson_ratio=0.5"]
+KNOWN = [*LAB, *BOX, *MATERIALS, "--out"]
+# Ends a command without any chance to tidy up, when it is about to move its files to their folder.
+KILLED = """import os, signal, sys
+from mcdem.experiment import publish
+publish.publish = lambda *_: os.kill(os.getpid(), signal.SIGKILL)
+from mcdem.commands.command_line import run_command
+run_command(sys.argv[1:])
+"""
+
+
+def lab_truth(recording):
+    scans = recording.scans
+    contacts = [[Contact(*one) for one in zip(seen.grain.tolist(), seen.partner.tolist(), seen.point, seen.force, strict=True)]
+                for seen in scans.contacts]
+    phase = [Phase(one).name for one in scans.phase]
+    columns = (scans.frame.tolist(), scans.plate_z.tolist(), phase, scans.position, contacts, scans.top_force.tolist())
+    return Truth(recording.diameter, [Scan(*one) for one in zip(*columns, strict=True)])
+
+
+class Import(CommandCase):
+    def imported(self, *words):
+        return self.done(*IMPORT, *words)
+
+    def text(self, name):
+        return (self.folder / name).read_text()
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+
+
+class OfARun(Import):
+    """A run that starts at rest; folder "seen" has its data from a perfect instrument."""
+
+    def setUp(self):
+        super().setUp()
+        self.run_small(AT_REST, ("contact.model", "mc_dem"))
+        self.done("experiment", "from-run", "a", *PERFECT, "--out", "seen")
+        self.truth = read_experiment(self.folder / "seen").recording
+        self.lab = lab_truth(self.truth)
+
+    def write_lab(self, style=Style()):
+        for name, write in (("plate.csv", lab_plate), ("grains.csv", lab_grains), ("contacts.csv", lab_contacts)):
+            self.write(name, write(self.lab, style))
+
+    def expect_truth(self, folder, contacts=True):
+        """Numbers were printed with nine digits."""
+        read, truth = read_experiment(self.folder / folder).recording.scans, self.truth.scans
+        self.assertEqual(read.phase.tolist(), truth.phase.tolist())
+        np.testing.assert_allclose(read.plate_z, truth.plate_z, rtol=0, atol=1e-10)
+        np.testing.assert_allclose(read.top_force, truth.top_force, rtol=0, atol=1e-8)
+        np.testing.assert_allclose(read.position, truth.position, rtol=0, atol=1e-9)
+        for found, wanted in zip(read.contacts, truth.contacts, strict=True) if contacts else ():
+            self.assertEqual(found.partner.tolist(), wanted.partner.tolist())
+            np.testing.assert_allclose(found.force, wanted.force, rtol=0, atol=1e-8)
+            np.testing.assert_allclose(found.point, wanted.point, rtol=0, atol=1e-9)
+
+    def test_tables_of_a_laboratory_become_the_experiment_of_their_run(self):
+        self.write_lab()
+        made = self.imported(*KNOWN, "lab")
+        self.assertEqual(made.err, "")
+        for part in ("grains.csv: grains (sure: its columns are named so)\n",
+                     "  radius        Radius [mm]        sure    its name; neighbours touch", "lab: 9 frames, 30 grains in 9 of them, "):
+            self.assertIn(part, made.out)
+        self.expect_truth("lab")
+        self.assertEqual(read_experiment(self.folder / "lab").name, "lab")
+        self.assertIn("30 grains", self.done("experiment", "check", "lab").out)
+
+    def test_a_mapping_reads_other_tables_of_the_laboratory(self):
+        """Also compressed ones."""
+        self.write_lab()
+        self.imported(*KNOWN, "lab")
+        (self.folder / "plate2.csv.gz").write_bytes(gzip.compress(self.text("plate.csv").encode()))
+        self.imported("plate2.csv.gz", "grains.csv", "contacts.csv", "--mapping", "lab/mapping.toml", "--metadata", "lab/experiment.toml",
+                      "--out", "again", "--gzip", "--name", "again")
+        self.expect_truth("again")
+        self.assertTrue((self.folder / "again/contacts.csv.gz").exists())
+        self.assertIn('files = ["plate2.csv.gz"]', self.text("again/mapping.toml"))
+
+    def test_uncertain_guesses_must_be_confirmed_in_the_mapping(self):
+        self.write_lab(Style(named=False))
+        refused = mcdem_command(*IMPORT, *LAB, "--out", "lab")
+        self.assertEqual(refused.code, 2)
+        self.assertIn("  length_unit   mm                 unclear no name says it", refused.out)
+        self.assertRegex(refused.err,
+                         r'mcdem: lab/mapping.toml:\d+: length_unit must be confirmed, got "\?mm": no name says it')
+        for part in ("mcdem: --set: box.size must be the inner width and depth of the box",
+                     "correct the entries of lab/mapping.toml that begin with a question mark, remove the marks, and import again with "
+                     "--mapping"):
+            self.assertIn(part, refused.err)  # all at once
+        self.assertEqual(os.listdir("lab"), ["mapping.toml"])
+
+        again = ["--mapping", "lab/mapping.toml", *BOX, "--out", "lab"]
+        unchanged = mcdem_command(*IMPORT, *again)
+        self.assertEqual(unchanged.code, 2)
+        self.assertIn("put in what is right, without the question mark", unchanged.err)
+        self.refused([*IMPORT, *KNOWN, "lab"], "lab/mapping.toml: is there already: import with --mapping lab/mapping.toml, or remove it")
+
+        mapping = re.sub(r'(length_unit = )"\?[a-z]*"', r'\1"mm"', self.text("lab/mapping.toml"))
+        mapping = re.sub(r'(force_unit = )"\?[a-zA-Z]*"', r'\1"mN"', mapping).replace('"?', '"')
+        self.write("lab/mapping.toml", mapping)
+        self.imported(*again)
+        self.expect_truth("lab")
+        self.assertEqual(self.text("lab/mapping.toml"), mapping)
+
+    def test_dumps_of_another_program_are_imported(self):
+        rows = (f"{100 * scan.frame} {scan.plate_z!r} {scan.top_force!r}\n" for scan in self.lab.scans)
+        self.write("plate.txt", "step plate_z top_force\n" + "".join(rows))
+        self.write("grains.dump", dump_of_grains(self.lab))
+        self.write("pairs.dump", dump_of_contacts(self.lab, False))
+        self.imported("plate.txt", "grains.dump", "pairs.dump", *BOX, *MATERIALS, "--out", "dumped")
+        self.expect_truth("dumped", contacts=False)
+        self.done("experiment", "check", "dumped")
+
+    def test_replaces_only_its_own_files(self):
+        self.write_lab()
+        (self.folder / "lab.importing/kept").mkdir(parents=True)
+        (self.folder / "old").mkdir()
+        self.write("old/contacts.csv.gz", "others")
+        self.refused([*IMPORT, *KNOWN, "old"], "--out: old already contains contacts.csv.gz")
+        self.refused([*IMPORT, *KNOWN, "plate.csv/x"], "must be a folder, got a file in its path, plate.csv")
+        self.imported(*KNOWN, "lab/", "--set", 'name="Probe 7"')
+        self.assertEqual(read_experiment(self.folder / "lab").name, "Probe 7")
+        self.imported(*KNOWN, "second/")
+        self.assertEqual(read_experiment(self.folder / "second").name, "second")
+        self.assertEqual(set(os.listdir()), {"a", "seen", "small.toml", *LAB, "lab", "lab.importing", "old", "second"})
+
+    def test_what_a_killed_import_has_left_is_removed_by_the_next_one(self):
+        self.write_lab()
+        words = [*IMPORT, *KNOWN, "lab"]
+        killed = subprocess.run([sys.executable, "-B", "-c", KILLED, *words], capture_output=True, text=True)
+        self.assertEqual(killed.returncode, -signal.SIGKILL, killed.stderr)
+        there = {"a", "seen", "small.toml", *LAB}
+        left = set(os.listdir()) - there
+        self.assertEqual([re.sub("[0-9a-f]{16}", "", name) for name in left], ["lab..tmp"])
+        self.done(*words)
+        self.assertEqual(set(os.listdir()), there | {"lab"})
+
+
+class OfAProgramme(Import):
+    def test_keeps_stages_and_times(self):
+        self.run_small(AT_REST, ("contact.model", "independent"), ("plate.end", 0.06), scene=STAGES)
+        self.done("experiment", "from-run", "a", "--out", "e")
+        self.imported("e/contacts.csv", "e/plate.csv", "e/grains.csv", "--metadata", "e/experiment.toml", "--out", "i")
+        seen, imported = (read_experiment(self.folder / name).recording for name in "ei")
+        self.assertTrue(seen.has_programme)
+        self.assertEqual(imported.parameters, seen.parameters)
+        self.assertEqual(imported.scans.time.tolist(), seen.scans.time.tolist())
+
+
+class WrongOptions(Import):
+    def test_are_bad_input(self):
+        self.write("odd.csv", "a,b\n1,2\n1,2,3\n")
+        for words, *parts in ((["--out", "e"], "TABLE: must be at least one file, or --mapping must name them"),
+                              (["none", "odd.csv", "--out", "e"], "none: must be a table, got no such file",
+                               "odd.csv:3: must have 2 columns as the first row, got 3"),
+                              (["--mapping", "none", "--out", "e"], "none: must be a mapping of at most 1 MB, got no such file"),
+                              (["odd.csv", "--metadata", "none", "--out", "e"], "none: must be a text of at most 1 MB, got no such file"),
+                              (["odd.csv", "--out", "small.toml"], "--out: small.toml must be a folder, got a file")):
+            with self.subTest(words):
+                self.refused([*IMPORT, *words], *parts)
+                self.assertFalse((self.folder / "e").exists())
+
+    def test_are_reported_with_the_mapping(self):
+        self.write("odd.csv", "a,b\n1,2\n")
+        words = [word for setting in ("box.size=[60.0, 60.0]", "grains.friktion=1", "nothing") for word in ("--set", setting)]
+        wrong = mcdem_command(*IMPORT, "odd.csv", *words, "--out", "e")
+        self.assertEqual(wrong.code, 2)
+        for part in ("--set: box.size must be > 0 and <= 20 [m], got 60: divide by 1000 if it is in millimetres",
+                     "--set: grains.friktion is not a key of an experiment", "--set: must be KEY=VALUE", "role must be confirmed"):
+            self.assertIn(part, wrong.err)
+        self.assertTrue((self.folder / "e/mapping.toml").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
