@@ -24,7 +24,7 @@ FLOORS = {
 ROOMS = {
     "results": [],
     "importing": [],
-    "experiment": ["importing", "results"],
+    "experiment": ["results"],
     "observe": ["experiment", "results"],
     "exporting": ["results"],
     "calibration": ["observe", "experiment", "results"],

@@ -24,19 +24,6 @@ constexpr bool has_wall(const Box& box, Wall wall) {
     return is_cylinder(box) && wall == curved_wall;
 }
 
-/// Name in messages and files: "side" for a cylinder's curved wall.
-constexpr std::string_view wall_name(const Box& box, Wall wall) {
-    return is_cylinder(box) && wall == curved_wall ? "side" : name(wall);
-}
-
-/// Inverse of wall_name; nothing if the container has no such wall.
-inline std::optional<Wall> find_wall(const Box& box, std::string_view words) {
-    for (int wall = 0; wall < wall_count; ++wall)
-        if (has_wall(box, static_cast<Wall>(wall)) && words == wall_name(box, static_cast<Wall>(wall)))
-            return static_cast<Wall>(wall);
-    return std::nullopt;
-}
-
 constexpr double cylinder_radius(const Box& box) { return box.size_x / 2; }
 
 /// Area of the floor over size_x size_y.

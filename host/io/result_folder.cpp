@@ -202,15 +202,6 @@ void ResultFolder::finish(const StopWanted& stop_wanted) {
     remove_segments();
 }
 
-FolderLock open_output_folder(const std::filesystem::path& folder) {
-    expect_no_experiment(folder);
-    make_result_folder(folder);
-    FolderLock lock(folder, FolderLock::Use::alone);
-    expect_no_experiment(folder);  // may have been created by another program in the meantime
-    remove_temporaries(folder / "simulations");
-    return lock;
-}
-
 fs::path parts_folder(const fs::path& folder) { return folder / "parts"; }
 
 void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged, const StopWanted& stop_wanted) {

@@ -60,12 +60,6 @@ private:
     int segments_ = 0;  ///< number of the next segment
 };
 
-/// Creates the folder if necessary and locks it against other programs for the lifetime of the lock. Removes
-/// temporary files of killed programs there and in its simulations. Throws InputError for a file, for the
-/// folder of an experiment, and if another program uses the folder; RunError if it cannot be created or
-/// written.
-FolderLock open_output_folder(const std::filesystem::path& folder);
-
 /// Folder of the parts of the run in `folder` until they are merged.
 std::filesystem::path parts_folder(const std::filesystem::path& folder);
 

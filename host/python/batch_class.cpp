@@ -14,8 +14,8 @@ namespace py = pybind11;
 
 class Batch {
 public:
-    Batch(const Scene& scene, const std::string& device)
-        : device_(device), scene_(scene), packings_(make_packings(scene)) {}
+    Batch(const Scene& scene, const std::string& device, const StopWanted& stop_wanted)
+        : device_(device), scene_(scene), packings_(make_packings(scene, stop_wanted)) {}
 
     std::size_t packings() const { return packings_.size(); }
     std::string device_name() const { return device_.info().name; }
@@ -54,8 +54,9 @@ private:
 void bind_batch(py::module_& module) {
     py::class_<Batch>(module, "Batch", "Variants of a scene on the same packings.")
         .def(py::init([](const Scene& scene, const std::string& device) {
-                 return watched(py::none(),
-                                [&](const auto&) { return std::make_unique<Batch>(scene, device); });
+                 return watched(py::none(), [&](const auto& options) {
+                     return std::make_unique<Batch>(scene, device, options.stop_wanted);
+                 });
              }),
              py::arg("scene"), py::arg("device"))
         .def_property_readonly("packings", &Batch::packings)

@@ -26,6 +26,9 @@ void bind_diagnosis_tables(pybind11::module_& module);
 /// Converts values of scene keys to int, float, bool or str; None for an empty text.
 pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);
 
+/// Invalid UTF-8, for example in paths, is decoded like os.fsdecode.
+pybind11::str python_text(const std::string& text);
+
 /// Values of scene keys as TOML text, by key.
 using KeyValues = std::map<std::string, std::string>;
 /// From a dict of dotted keys. Throws InputError.

@@ -69,6 +69,22 @@ std::vector<Scan> scans_of(const py::dict& fields) {
     return scans;
 }
 
+/// What is used as an index later.
+void expect_consistent(const Recording& recording) {
+    const auto grains = static_cast<int>(recording.diameter.size());
+    const auto is_grain = [&](int number) { return number >= 0 && number < grains; };
+    for (const Scan& scan : recording.scans) {
+        bool good = scan.phase == Phase::load || scan.phase == Phase::unload;
+        good = good && (scan.position.empty() || scan.position.size() == recording.diameter.size());
+        for (const Contact& contact : scan.contacts)
+            good = good && is_grain(contact.grain) &&
+                   (is_grain(contact.partner) ||
+                    (contact.partner < 0 && contact.partner >= wall_partner(Wall::plate)));
+        if (!good)
+            throw py::value_error(fmt::format("scan {}: numbers of grains, walls or phases", scan.frame));
+    }
+}
+
 Measurement measurement_of(const std::map<std::string, double>& values) {
     return {values.at("position_error"), values.at("diameter_error"), values.at("force_error"),
             values.at("force_threshold")};
@@ -85,6 +101,7 @@ Experiment experiment_of(const py::dict& fields) {
     recording.plate_start = fields["plate_start"].cast<double>();
     recording.diameter = fields["diameter"].cast<std::vector<double>>();
     recording.scans = scans_of(fields);
+    expect_consistent(recording);
     experiment.materials = fields["materials"].cast<std::map<std::string, double>>();
     experiment.uncertainty = fields["uncertainty"].cast<std::map<std::string, double>>();
     experiment.measurement = measurement_of(fields["measurement"].cast<std::map<std::string, double>>());
@@ -128,14 +145,14 @@ void bind_experiment(py::module_& module) {
         "forces, and the number needed.");
     module.def(
         "measured",
-        [](const SharedRun& run, std::size_t replica, const std::map<std::string, double>& instrument,
-           std::uint64_t seed) {
-            const Recording& truth = run->recordings.at(replica);
+        [](const SharedRun& run, const std::map<std::string, double>& instrument, std::uint64_t seed) {
+            const Instrument read_by = instrument_of(instrument);
+            const py::gil_scoped_release others_go_on;
             return std::make_shared<Run>(
-                Run{run->name, "", "", "", "", {measured(truth, instrument_of(instrument), seed)}});
+                Run{run->name, "", "", "", "", {measured(run->recordings.at(0), read_by, seed)}});
         },
-        py::arg("run"), py::arg("replica"), py::arg("instrument"), py::arg("seed"),
-        "One recording of a run as an instrument reads it (experiment/instrument.h).");
+        py::arg("run"), py::arg("instrument"), py::arg("seed"),
+        "The first recording of a run as an instrument reads it (experiment/instrument.h).");
 }
 
 }  // namespace mcdem::python

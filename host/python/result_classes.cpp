@@ -226,7 +226,12 @@ void bind_recording(py::module_& module) {
             "parameters", [](const OneRecording& self) { return typed_parameters(self.get().parameters); },
             "Every scene key and its value for this replica; None where the key does not apply.")
         .def_property_readonly("_parameter_texts",
-                               [](const OneRecording& self) { return self.get().parameters; })
+                               [](const OneRecording& self) {
+                                   py::dict all;
+                                   for (const auto& [key, text] : self.get().parameters)
+                                       all[py::str(key)] = python_text(text);
+                                   return all;
+                               })
         .def_property_readonly(
             "box",
             [](const OneRecording& self) { return std::pair(self.get().box.size_x, self.get().box.size_y); },

@@ -33,10 +33,9 @@ bool is_all(const std::string& text, Number& number) {
     return error == std::errc{} && end == text.data() + text.size();
 }
 
-/// Invalid UTF-8, for example in paths, is decoded like os.fsdecode.
-py::str python_text(const std::string& text) {
-    return py::reinterpret_steal<py::str>(
-        PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+/// Inverse of python_text.
+std::string text_of(const py::handle& text) {
+    return py::module_::import("os").attr("fsencode")(text).cast<std::string>();
 }
 
 py::object typed(const std::string& text) {
@@ -61,6 +60,11 @@ py::list parameters(const Scene& scene) {
 }
 
 }  // namespace
+
+py::str python_text(const std::string& text) {
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+}
 
 py::dict typed_parameters(const std::map<std::string, std::string>& parameters) {
     py::dict all;
@@ -94,30 +98,37 @@ void bind_scene(py::module_& module) {
             "A scene file (TOML); `set` overrides keys of it.")
         .def_static(
             "parse",
-            [](const std::string& text, const py::dict& set) {
-                return parse_scene(text, "scene", assignments(set));
+            [](const py::str& text, const py::dict& set) {
+                return parse_scene(text_of(text), "scene", assignments(set));
             },
             py::arg("text"), py::kw_only(), py::arg("set") = py::dict(),
             "A scene from TOML text. Packing files are relative to the working folder.")
-        .def_readonly("name", &Scene::name, "What results are called.")
-        .def_readonly("text", &Scene::text, "TOML, with what was overridden: what results keep.")
+        .def_property_readonly(
+            "name", [](const Scene& scene) { return python_text(scene.name); }, "What results are called.")
+        .def_property_readonly(
+            "text", [](const Scene& scene) { return python_text(scene.text); },
+            "TOML, with what was overridden: what results keep.")
         .def_property_readonly("labels", &labels, "Label of each replica; [replicas].")
         .def_property_readonly("parameters", &parameters,
                                "Every key and its value, by replica; None where the key does not apply.")
         .def("__len__", [](const Scene& scene) { return scene.replicas.size(); })
-        .def(py::pickle([](const Scene& scene) { return py::make_tuple(scene.name, scene.text); },
-                        [](const py::tuple& state) {
-                            return parse_scene(state[1].cast<std::string>(),
-                                               state[0].cast<std::string>() + ".toml", {});
-                        }))
+        .def(py::pickle(
+            [](const Scene& scene) {
+                return py::make_tuple(python_text(scene.name), python_text(scene.text));
+            },
+            [](const py::tuple& state) {
+                return parse_scene(text_of(state[1]), text_of(state[0]) + ".toml", {});
+            }))
         .def("__repr__", [](const Scene& scene) {
             return "<mcdem.Scene " + scene.name + ": " + std::to_string(scene.replicas.size()) + " replica" +
                    (scene.replicas.size() == 1 ? ">" : "s>");
         });
     module.def(
         "scene_of_options",
-        [](const std::string& file, const std::vector<std::string>& overrides) {
-            Scene scene = read_scene(file, overrides);
+        [](const std::filesystem::path& file, const std::vector<py::str>& overrides) {
+            std::vector<std::string> texts;
+            for (const py::str& one : overrides) texts.push_back(text_of(one));
+            Scene scene = read_scene(file, texts);
             const auto warnings = scene_warnings(scene);
             return py::make_tuple(std::move(scene), warnings);
         },

@@ -110,6 +110,24 @@ SharedRun read(const std::filesystem::path& path, const std::string& what) {
     return std::make_shared<Run>(read_run(path, what_of(what)));
 }
 
+/// A run of one recording, with all its data.
+SharedRun read_replica(const std::filesystem::path& path, std::size_t number) {
+    return watched(py::none(), [&](const TrialOptions& options) {
+        RunReader reader(path);
+        auto run = std::make_shared<Run>(reader.run());
+        if (number >= run->recordings.size())
+            throw InputError(fmt::format("{}: has {} replicas, got number {}", path.string(),
+                                         run->recordings.size(), number));
+        Recording one = std::move(run->recordings[number]);
+        for (std::size_t s = 0; s < one.scans.size(); ++s) {
+            if (options.stop_wanted()) throw Interrupted();
+            one.scans[s] = reader.read_scan(number, s);
+        }
+        run->recordings.assign(1, std::move(one));
+        return run;
+    });
+}
+
 }  // namespace
 
 void bind_simulation(py::module_& module) {
@@ -123,6 +141,8 @@ void bind_simulation(py::module_& module) {
                "Runs a scene into a folder, as `mcdem run` does, and returns its results.\n\n"
                "After Ctrl-C, or an exception of `progress(fraction)`, the run can be continued with "
                "resume=True.");
+    module.def("read_replica", &read_replica, py::arg("path"), py::arg("number"),
+               "One recording of a result folder or file.");
     module.def("read", &read, py::arg("path"), py::kw_only(), py::arg("what") = "everything",
                "A result folder or file. `what`: everything, positions, contacts or observables (neither).");
 }

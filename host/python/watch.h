@@ -86,12 +86,6 @@ auto without_gil(Watch& watch, Work work) {
     return result;
 }
 
-/// The same; the JSON text that `work` returns becomes Python objects.
-template <class Work>
-pybind11::object json_result(Watch& watch, Work work) {
-    return pybind11::module_::import("json").attr("loads")(without_gil(watch, work));
-}
-
 /// The same with the progress of a Python callable; `work` gets TrialOptions.
 template <class Work>
 auto watched(pybind11::object progress, Work work) {

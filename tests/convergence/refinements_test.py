@@ -3,9 +3,9 @@ import unittest
 
 from mcdem.convergence.refinements import refinements_of
 
-PARAMETERS = {"plate.speed": 0.1, "protocol.rate_tolerance": 0, "grains.density": 11.5, "numerics.time_step": 0.1, "numerics.skin": 0.2,
-              "numerics.precision": "double", "protocol.stop_at_scans": False, "protocol.settle_unbalanced_force": 0.001,
-              "protocol.settle_time": 0.5}
+PARAMETERS = {"container.shape": "box", "plate.speed": 0.1, "protocol.rate_tolerance": 0, "grains.density": 11.5,
+              "numerics.time_step": 0.1, "numerics.skin": 0.2, "numerics.precision": "double", "protocol.stop_at_scans": False,
+              "protocol.settle_unbalanced_force": 0.001, "protocol.settle_time": 0.5}
 STAGES = {"programme.1.stage": "move", "programme.1.speed": 0.4, "programme.2.stage": "hold", "programme.2.speed": None,
           "programme.3.stage": "hold", "programme.3.speed": None, "programme.4.stage": "move", "programme.4.speed": 0.8}
 
@@ -31,8 +31,10 @@ class Refinements(unittest.TestCase):
             step, = all_found[cause].steps
             self.assertEqual((step.remaining, step.changes), (remaining, changes), cause)
 
-    def test_the_widest_margin_is_narrowed(self):
-        self.assertEqual(found(numerics__skin=2)["list margin"].steps[0].changes, {"numerics.skin": 1.6})
+    def test_a_margin_that_cannot_be_wider_is_narrowed(self):
+        for changes, skin in (({"numerics__skin": 2}, 1.6), ({"container__shape": "periodic"}, 0.16)):
+            step, = found(**changes)["list margin"].steps
+            self.assertAlmostEqual(step.changes["numerics.skin"], skin)
 
     def test_slow_the_plate_in_all_that_it_does(self):
         steps = found(protocol__rate_tolerance=0.02, **STAGES)["plate speed"].steps

@@ -80,7 +80,7 @@ class FromRun(Made):
         names = ("frame", "cycle", "phase", "settled", "time", "plate_z", "wall_force", "kinetic_energy", "elastic_energy",
                  "coordination_number", "mean_force", "packing_fraction", "branch_length")
         for stated, more in ((Measurement(1e-4, 5e-5, 0.05, 0.02), NOISY), (Measurement(), {})):
-            seen = run_of(_engine.measured(_engine.read("a"), 1, asdict(stated) | more, 7)).recordings[0]
+            seen = run_of(_engine.measured(_engine.read_replica("a", 1), asdict(stated) | more, 7)).recordings[0]
             write_experiment("e", experiment_from(seen, stated))
             read = read_experiment(self.folder / "e").recording
             np.testing.assert_array_equal(read.diameter, seen.diameter)

@@ -29,6 +29,7 @@ class Needed(unittest.TestCase):
         for spoilt, found in (
                 (with_scans(lattice(), position=without_rest), "lattice: grains.csv must have the positions of frame 0: simulations start"),
                 (with_recording(lattice(), plate_start=0.087), "lattice: plate.csv must have loading frames below plate.start"),
+                (with_scans(lattice(), phase=np.ones(9, int)), "lattice: plate.csv must have loading frames below plate.start"),
                 (first_scans(lattice(), 1), "lattice: plate.csv must have loading frames below plate.start"),
                 (with_measurement(lattice(), position_error=0.0), "lattice: experiment.toml must state how well positions are known: "),
                 (with_measurement(lattice(), force_error=0.0), "lattice: experiment.toml must state how well the forces of contacts.csv")):

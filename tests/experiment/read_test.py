@@ -157,11 +157,11 @@ class Values(FolderCase):
     def test_in_a_periodic_container_grains_do_not_jump(self):
         self.replace("experiment.toml", *PERIODIC)
         self.replace("contacts.csv", "1,0,x_min,0,0.015,0.0095,0.004,0,0\n", "")
-        self.replace("grains.csv", "1,0,0.0095,0.015", "1,0,-0.0305,0.044")
-        self.texts["grains.csv"] += "2,0,0.05,0.014,0.01,0.02\n2,1,0.0305,0.015,0.01,0.02\n"
+        self.replace("grains.csv", "1,0,0.0095,0.015", "1,0,-0.015,0.044")
+        self.texts["grains.csv"] += "2,0,0,0.014,0.01,0.02\n2,1,0.0305,0.015,0.01,0.02\n"
         position = self.read().recording.scans.position
-        np.testing.assert_allclose([one[0] for one in position], [[0.01, 0.015, 0.01], [0.0095, 0.014, 0.0095], [0.01, 0.014, 0.01]])
-        self.replace("grains.csv", "2,0,0.05", "2,0,0.9")
+        np.testing.assert_allclose([one[0] for one in position], [[0.01, 0.015, 0.01], [0.025, 0.014, 0.0095], [0.04, 0.014, 0.01]])
+        self.replace("grains.csv", "2,0,0", "2,0,0.9")
         self.assertTrue(self.problems()[0].startswith("grains.csv:6: centres must lie in the periodic container of 40 by 30 mm below"))
 
     def test_several_experiments_are_named_by_their_folders(self):
@@ -214,6 +214,16 @@ class Problems(FolderCase):
             "frame 0 must list all 2 grains", "centres must lie in the box of 40 by 30 mm below the plate at 0.019 m",
             "frame 1 must list all 2 grains",
             "must have 6 columns as the header", "grain must be 0 to 1", "frame 2 must list all 2 grains"])
+
+    def test_of_a_wrong_row_nothing_more_is_told(self):
+        for name, old, new in (("grains.csv", "1,1,0.0305,0.015,0.0095,0.02", "1,1,0.0305,0.015,0.0095,0.05"),
+                               ("grains.csv", "1,1,0.0305,0.015,0.0095,0.02", "1,1,0.0305,0.015,0.0095,-0.02"),
+                               ("contacts.csv", "1,1,0,0.02", "1,1,9,20"), ("contacts.csv", "1,1,0,0.02", "1,9,0,20"),
+                               ("contacts.csv", "1,1,0,0.02", "2,1,0,x")):
+            with self.subTest(new):
+                self.texts = dict(SMALL)
+                self.replace(name, old, new)
+                self.assertEqual(len(self.problems()), 1, self.problems())
 
     def test_contacts_that_are_there_three_times(self):
         pair, wall = SMALL["contacts.csv"].splitlines()[1:4:2]

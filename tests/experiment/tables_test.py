@@ -5,6 +5,7 @@ import gzip
 import math
 import os
 import random
+import tracemalloc
 import unittest
 from unittest import mock
 
@@ -40,13 +41,13 @@ class Rows(FolderCase):
         file, problems = self.place / "t.csv", Problems()
         file.write_bytes(text if isinstance(text, bytes) else text.encode())
         with mock.patch.object(tables, "BLOCK", block):
-            read = read_table(file, {"a": WHOLE, "b": NUMBER}, {"c": NUMBER}, 1 << 20, problems)
-        if read is not None:
-            found = RowProblems(read)
-            found.add_wrong(*read.values)
+            self.read = read_table(file, {"a": WHOLE, "b": NUMBER}, {"c": NUMBER}, 1 << 20, problems)
+        if self.read is not None:
+            found = RowProblems(self.read)
+            found.add_wrong(*self.read.values)
             found.report(problems)
-            self.columns = {name: values.tolist() for name, values in read.values.items()}
-            self.lines = read.line.tolist()
+            self.columns = {name: values.tolist() for name, values in self.read.values.items()}
+            self.lines = self.read.line.tolist()
         return [line.replace(f"{file}", "t") for line in problems.lines()]
 
     def test_columns_may_have_any_order_and_others_are_ignored(self):
@@ -56,7 +57,7 @@ class Rows(FolderCase):
     def test_comments_empty_lines_quotes_and_line_ends(self):
         for end in ("\n", "\r\n"):
             for block in (1, 7, 20, tables.BLOCK):
-                text = "\ufeff\n # by hand\n\t\n\"a\",b\n1,2\n\n#3,4\n 5 ,\t6\n\"7\", \" 8 \"\n \n9,10\n\n".replace("\n", end)
+                text = "\ufeff\n # by hand\n\t\n\"a\",\" b \"\n1,2\n\n#3,4\n 5 ,\t6\n\"7\", \" 8 \"\n \n9,10\n\n".replace("\n", end)
                 self.assertEqual(self.table(text, block), [])
                 self.assertEqual((self.columns, self.lines), ({"a": [1, 5, 7, 9], "b": [2, 6, 8, 10]}, [5, 8, 9, 11]), (end, block))
 
@@ -92,6 +93,7 @@ class Rows(FolderCase):
             for block in (100, tables.BLOCK):
                 told = self.table("a,b\n1,2\n" + rows, block)
                 self.assertEqual((len(told), told[-1]), (21, ".. and 1980 more"))
+                self.assertLessEqual(max(map(len, (self.read.others, *self.read.words.values()))), 20)
 
     def test_words_for_messages_are_short_and_without_control_characters(self):
         told = self.table("a,b\n1,\x1b[31m\n2," + "9" * 100_000 + "x\n3,\xff\n")
@@ -175,8 +177,11 @@ class Files(FolderCase):
         self.pack("plate.csv", GZIP(self.texts["plate.csv"].encode() + b"\n" * 4_000_000))
         self.assertEqual(self.problems_there(), [])
         for largest in (3_900_000, 10_000):
+            tracemalloc.start()
             told, = self.problems_there(largest)
             self.assertTrue(told.startswith("plate.csv.gz: is larger than an experiment's"), told)
+            self.assertLess(tracemalloc.get_traced_memory()[1], 1_000_000 + 4 * largest)
+            tracemalloc.stop()
 
     def test_tables_that_are_no_files(self):
         for name in (*TABLES, "experiment.toml"):

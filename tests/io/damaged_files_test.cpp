@@ -258,19 +258,6 @@ TEST(damaged_files, killed_while_writing_leaves_the_old_file) {
     EXPECT_EQ(read_run(file).recordings.size(), 1u);
 }
 
-TEST(damaged_files, reopening_a_folder_removes_files_of_killed_processes) {
-    TemporaryFolder folder;
-    std::filesystem::create_directory(folder / "simulations");
-    for (const auto* name : {"run.h5", "run.h5.0123456789abcdef.tmp", "simulations/a.obs",
-                             "simulations/a.obs.0123456789abcdef.tmp"})
-        std::ofstream(folder / name) << "content";
-    open_output_folder(folder.path());
-    EXPECT_EQ(files_in(folder.path()), 2);
-    EXPECT_TRUE(std::filesystem::exists(folder / "run.h5"));
-    EXPECT_EQ(files_in(folder / "simulations"), 1);
-    EXPECT_TRUE(std::filesystem::exists(folder / "simulations/a.obs"));
-}
-
 TEST(damaged_files, files_being_written_are_not_removed) {
     TemporaryFolder folder;
     {

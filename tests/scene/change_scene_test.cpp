@@ -78,10 +78,12 @@ TEST(WithChanges, RefusesWhatItCannotChange) {
         {"batch.replicas", "3", "that can change on the same packings"},
         {"species.1.fraction", "0.5", "that can change on the same packings"},
         {"species.3.density", "5", "that can change on the same packings"},
+        {"grains.density", "5", "that can change on the same packings"},
+        {"numerics.slots", "32", "that can change on the same packings"},
         {"programme.3.speed", "1", "that can change on the same packings"},
         {"grains.colour", "1", "that can change on the same packings"},
-        {"grains.friction", "-1", "grains.friction must be a number between 0 and 10"},
-        {"grains.friction", "[1", "a value of TOML"},
+        {"walls.friction", "-1", "walls.friction must be a number between 0 and 10"},
+        {"walls.friction", "[1", "a value of TOML"},
         {"contact.model", "\"hertz\"", "contact.model must be one of"},
         {"plate.end", "1", "plate"},  // above plate.start
     };

@@ -22,7 +22,4 @@ void add_completion(CLI::App& app, int& exit_code);
 /// unread.
 bool is_python_command(const std::vector<std::string>& words);
 
-/// Checks finite numbers. CLI11's own check prints the largest double with its 309 digits.
-const CLI::Validator& at_least_zero();
-
 }  // namespace mcdem::cli

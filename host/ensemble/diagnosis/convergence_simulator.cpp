@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
 #include <variant>
 
 #include "core/errors.h"
@@ -73,6 +74,7 @@ void ConvergenceSimulator::find_grid(const TrialOptions& options) {
 
 Eigen::MatrixXd ConvergenceSimulator::observe(const std::map<std::string, std::string>& values,
                                               const TrialOptions& options) {
+    if (grid_.displacement.empty()) throw std::logic_error("displacements are compared that were not found");
     const Scene changed = with_changes(scene_, values);
     const std::vector<Trial> trials = trials_of(changed.replicas.front(), jitter_);
     return observe_trials(device_, settings_of(changed, trials.front().model), trials, store_, options);

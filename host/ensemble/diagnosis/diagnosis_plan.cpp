@@ -85,6 +85,10 @@ DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& measure
     DiagnosisPlan plan;
     for (const Experiment& experiment : measured)
         plan.experiments.push_back(compared_cycles(scene, experiment));
+    for (const Experiment& experiment : plan.experiments)
+        if (experiment.recording.scans.empty())
+            throw InputError(experiment.name +
+                             ": cycles in plate.csv must count from 0, got none below protocol.cycles");
     const std::vector<Experiment>& experiments = plan.experiments;
     note_cycles(measured.front(), experiments.front(), options);
     const Grid grid = common_grid(experiments);

@@ -38,6 +38,10 @@ std::string simulation_name(const std::string& device, const TrialSettings& comm
         digest.add(key).add("=").add(value).add("\n");
     for (const Vec3& position : trial.packing.position) digest.add(std::span(position.data(), 3));
     digest.add(trial.packing.diameter);
+    for (const auto* vectors : {&trial.packing.velocity, &trial.packing.angular_velocity})
+        for (const Vec3& vector : *vectors) digest.add(std::span(vector.data(), 3));
+    for (const TangentialForce& one : trial.packing.tangential)
+        digest.add(fmt::format("{} {}", one.grain, one.partner)).add(std::span(one.force.data(), 3));
     const double jitter[] = {trial.jitter, trial.diameter_jitter};
     return digest.add(jitter).add(std::to_string(trial.seed)).hex();
 }

@@ -100,13 +100,13 @@ def is_shared(options: argparse.Namespace) -> bool:
 
 
 @contextlib.contextmanager
-def interruptible(kept: str = "") -> Iterator[None]:
-    """Work that a signal ends with KeyboardInterrupt, and that the same command continues. Imports must have been done before."""
+def interruptible(kept: str = GO_ON) -> Iterator[None]:
+    """Work that a signal ends with KeyboardInterrupt; `kept` tells what then remains. Imports must have been done before."""
     raise_when_interrupted()
     try:
         yield
     except KeyboardInterrupt:
-        say(f"interrupted; {kept}{GO_ON}")
+        say(f"interrupted; {kept}")
         raise
     finally:
         handle_signals(end_at_once)
@@ -129,7 +129,7 @@ def _compute_or_merge(work: SharedWork, parts: PartedWork, options: argparse.Nam
     """None: everything is merged and must be reported."""
     kept = f"results are kept in {work.out}; "
     try:
-        with interruptible(kept):
+        with interruptible(kept + GO_ON):
             if options.part:
                 return _compute_share(work, parts, options.part)
             if options.merge:

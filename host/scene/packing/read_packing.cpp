@@ -303,10 +303,9 @@ FilePacking read_yade_packing(std::string_view text, const std::string& source) 
 
 FilePacking read_csv_packing(const std::string& text, const std::string& source, std::optional<long> wanted) {
     FileProblems problems(source);
-    Table table(source, {"x_m", "y_m", "z_m", "diameter_m"}, text.size(), problems,
+    Table table(source, text, {"x_m", "y_m", "z_m", "diameter_m"}, problems,
                 {"frame", "species", "type", "vx_m_s", "vy_m_s", "vz_m_s", "spin_x_1_s", "spin_y_1_s",
-                 "spin_z_1_s", "radius_m", "density_kg_m3"},
-                &text);
+                 "spin_z_1_s", "radius_m", "density_kg_m3"});
     const bool has_frames = table.has(4), has_species = table.has(5) || table.has(6);
     const std::size_t species_column = table.has(5) ? 5 : 6;
     if (wanted && !has_frames && problems.empty())

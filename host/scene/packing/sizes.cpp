@@ -50,7 +50,7 @@ std::vector<double> read_diameters(const std::string& file) {
     std::vector<double> diameters;
     const std::string text =
         read_file(file, file + ": must be a CSV with a column diameter_m, got no file that can be read");
-    Table table(file, {"diameter_m"}, text.size(), problems, {}, &text);
+    Table table(file, text, {"diameter_m"}, problems);
     while (!problems.full() && table.next()) {
         const auto diameter = table.number(0);
         if (diameter && !(*diameter >= 1e-7 && *diameter <= 10))

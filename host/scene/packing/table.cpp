@@ -2,49 +2,15 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <zlib.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <memory>
-#include <new>
 #include <span>
-
-#include "core/input_file.h"
-#include "core/look.h"
 
 namespace mcdem::inline scene {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr auto too_large =
-    "is larger than an experiment's table may be: leave out frames, or split it into several experiments";
-
-/// The file's text, decompressed if necessary; reading stops above `largest` bytes. `failure` says why it
-/// cannot be unpacked.
-std::string table_text(const fs::path& file, std::uintmax_t largest, std::string& failure) {
-    const std::unique_ptr<gzFile_s, decltype(&gzclose)> in(gzdopen(open_input(file), "rb"), &gzclose);
-    if (!in) throw std::bad_alloc();
-    std::string text;
-    char block[65536];
-    for (int count = 1; count > 0 && text.size() <= largest;) {
-        count = gzread(in.get(), block, sizeof block);
-        int error = Z_OK;
-        const char* reason = gzerror(in.get(), &error);
-        if (error == Z_ERRNO) fail_reading(file.string() + ": cannot be read", errno);
-        if (count < 0 || error != Z_OK) {
-            failure = std::string("cannot be unpacked (") + reason + "): pack it again with gzip";
-            break;
-        }
-        text.append(block, static_cast<std::size_t>(count));
-    }
-    return text;
-}
-
 /// Why the text is not read as a table; empty if it is.
-std::string failure_of(std::string_view text, std::uintmax_t largest) {
-    if (text.size() > largest) return too_large;
+std::string failure_of(std::string_view text) {
     if (text.find('\0') != text.npos) return "holds zero bytes and is no table: save it as text in UTF-8";
     TextLines lines(text);
     while (const auto line = lines.next())
@@ -69,43 +35,18 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
 
 }  // namespace
 
-std::optional<fs::path> find_table(const fs::path& folder, const std::string& name, std::uintmax_t largest,
-                                   FileProblems& problems) {
-    const fs::path plain = folder / name, packed = folder / (name + ".gz");
-    // Of the link itself: a broken link means that a table is missing.
-    const bool has_plain = look_at_itself(plain) != At::nothing;
-    const bool has_packed = look_at_itself(packed) != At::nothing;
-    if (!has_plain && !has_packed) return std::nullopt;
-    const fs::path file = has_plain ? plain : packed;
-    const bool can_be_read = is_file(file);
-    const auto size = can_be_read ? size_of_file(file) : 0;
-    if (has_plain && has_packed)
-        problems.add(plain.string(), "is there twice, plain and as .gz: remove the one that is out of date");
-    else if (!can_be_read)
-        problems.add(file.string(), "must be a file that can be read");
-    else if (size > largest)
-        problems.add(file.string(), fmt::format("{} ({} bytes, at most {})", too_large, size, largest));
-    else
-        return file;
-    return std::nullopt;
-}
-
-Table::Table(const fs::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
-             FileProblems& problems, const std::vector<std::string>& optional, const std::string* text)
-    : name_(file.string()), columns_(columns), needed_(columns.size()), problems_(problems) {
+Table::Table(std::string name, std::string_view text, const std::vector<std::string>& columns,
+             FileProblems& problems, const std::vector<std::string>& optional)
+    : name_(std::move(name)), columns_(columns), needed_(columns.size()), problems_(problems) {
     columns_.insert(columns_.end(), optional.begin(), optional.end());
     words_.resize(columns_.size());
-    std::string failure;
-    if (!text) text_ = table_text(file, largest, failure);
-    std::string_view all = text ? *text : text_;
-    if (failure.empty()) failure = failure_of(all, largest);
-    if (!failure.empty()) {
+    if (const std::string failure = failure_of(text); !failure.empty()) {
         problems_.add(name_, failure);
         return;
     }
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (all.starts_with(byte_order_mark)) all.remove_prefix(byte_order_mark.size());
-    lines_.emplace(all);
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    lines_.emplace(text);
     read_header();
 }
 
@@ -187,6 +128,6 @@ std::optional<long> Table::whole_number(std::size_t column, long least) {
     return std::nullopt;
 }
 
-std::string Table::where(long line) const { return fmt::format("{}:{}", name_, line); }
+void Table::problem(const std::string& what) { problems_.add(fmt::format("{}:{}", name_, line_), what); }
 
 }  // namespace mcdem::scene

@@ -14,8 +14,9 @@ namespace {
 
 /// Whether the key determines packings, containers or the number of replicas.
 bool is_fixed(std::string_view name) {
-    for (const std::string_view table : {"name", "container.", "box.", "packing.", "batch."})
-        if (name.starts_with(table)) return true;
+    for (const std::string_view begin :
+         {"name", "container.", "box.", "packing.", "batch.", "numerics.slots"})
+        if (name.starts_with(begin)) return true;
     if (!name.starts_with("species.")) return false;
     const std::string_view last = last_part(name);
     return last == "name" || last == "fraction" || last == "sizes" || last.starts_with("diameter_");
@@ -25,6 +26,8 @@ bool is_fixed(std::string_view name) {
 const Key* changeable_key(const std::string& name, const Replica& replica) {
     const auto element = list_element(name);
     if (element && element->number >= static_cast<int>(element->table->size(replica))) return nullptr;
+    if (!replica.species.empty() && name.starts_with("grains.")) return nullptr;  // species have their own
+    if (!is_key_of(replica.box.shape, name)) return nullptr;
     return is_fixed(name) ? nullptr : find_key(name);
 }
 

@@ -38,10 +38,6 @@ void FileProblems::add(const std::string& what) {
     if (!full()) add(source_, what);
 }
 
-void FileProblems::add_once(const std::string& topic, const std::string& where, const std::string& what) {
-    if (told_.insert(topic).second) add(where, what);
-}
-
 std::vector<std::string> FileProblems::lines() const {
     auto problems = first_;
     const long more = count_ - static_cast<long>(first_.size());

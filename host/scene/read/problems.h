@@ -38,8 +38,6 @@ public:
     /// In a line of the source, or in the whole; ignored beyond the maximum.
     void add(long line, const std::string& what);
     void add(const std::string& what);
-    /// Adds only one problem for each `topic`: a column in millimetres is one problem, not one for each line.
-    void add_once(const std::string& topic, const std::string& where, const std::string& what);
     /// True at the maximum.
     bool full() const;
     bool empty() const { return count_ == 0; }
@@ -52,7 +50,6 @@ public:
 private:
     std::string source_;
     std::vector<std::string> first_;
-    std::set<std::string> told_;
     long count_ = 0;
 };
 

@@ -14,6 +14,7 @@ from ..observe.estimate import Estimate, mean_over_replicas
 from ..observe.levels import group_levels, level_tolerance
 from ..observe.replicas import MODEL, SEED, Replicas
 from ..observe.top_force import full_stroke, top_force_at
+from ..results.engine_run import run_of
 from ..results.names import ContactModel, ContainerShape, all_names, parse
 from ..results.parameters import Parameters, has_programme, keys_that_vary
 from ..results.recording import Floats
@@ -160,7 +161,6 @@ class _Trials:
 
     def top_forces(self, values: Floats, progress: Callable[[float], object]) -> Floats:
         """Mean top force at the displacement for each value [N]; NaN if it ran away. `progress` is told the number of rounds so far."""
-        from ..results.engine_run import run_of
         changes = [{MODULUS: self._modulus * value} if self._modulus else {GAMMA: value} for value in values.tolist()]
         # The simulation may be one interval into the last unloading when it stops.
         recordings = run_of(self._batch.simulate(changes, self._scans, lambda part: progress(

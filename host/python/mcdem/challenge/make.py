@@ -13,7 +13,7 @@ from ..experiment.from_run import experiment_from
 from ..experiment.write import write_experiment
 from ..files import create_whole, read_input
 from ..look import Path, is_there
-from ..outputs import make_folder_of, output_folder, remove_temporaries_of
+from ..outputs import make_folder_of, output_folder, remove_temporaries, remove_temporaries_of
 from ..results.engine_run import run_of
 from .case import Challenge, ChallengeCase, Hidden
 from .files import OpenCase, OpenChallenge, open_challenge_text, read_open_challenge
@@ -176,8 +176,9 @@ class _Making:
         """The k-th case of those that were simulated last."""
         if failure:
             raise RunError(f"{self._challenge.cases[number].folder}: its simulation failed at {failure}")
-        recording = run_of(self._simulator.measured(k)).recordings[0]
-        write_experiment(self._folder(number), experiment_from(recording, Measurement(*self._options.measurement)), gzip=True)
+        recording, folder = run_of(self._simulator.measured(k)).recordings[0], self._folder(number)
+        remove_temporaries(folder)
+        write_experiment(folder, experiment_from(recording, Measurement(*self._options.measurement)), gzip=True)
 
 
 def _pairs(hidden: Sequence[Hidden]) -> list[tuple[str, float]]:

@@ -76,7 +76,7 @@ def _calibration_options(options: argparse.Namespace) -> "Options":
 
 def _calibrate(scene: "Scene", reference: "Replicas", options: "Options") -> "SceneCalibration":
     from ..calibration.scene_calibration import calibrate_scene
-    with interruptible(), Progress() as progress:
+    with interruptible("nothing is kept"), Progress() as progress:
         def note(text: str) -> None:
             progress.clear()
             say(text)

@@ -10,9 +10,9 @@ from .. import _engine as engine
 from ..diagnosis.observables import Cell, Grid, cells_of, observables
 from ..errors import InputError
 from ..look import Path
-from ..outputs import output_folder, remove_temporaries
+from ..outputs import CONVERGENCE, expect_replaceable, output_folder, remove_temporaries
 from ..results.recording import Floats
-from .convergence_json import write_convergence
+from .convergence_json import FILE, write_convergence
 from .convergence_types import Convergence, Limits
 from .errors import Baseline, Errors, RefinedRuns, cause_errors, errors_of
 from .refinements import Changes, Refinement, refinements_of
@@ -36,6 +36,7 @@ def converge(scene: engine.Scene, folder: Path, *, replicas: int = 32, force_lim
     _check(replicas, force_limit, sd_limit, jitter)
     with output_folder(folder) as out:
         remove_temporaries(out / "simulations")
+        expect_replaceable(out / FILE, CONVERGENCE)
         simulator = engine.ConvergenceSimulator(scene, out, replicas=replicas, jitter=jitter, seed=seed, device=device)
         study = Study(scene, simulator, jitter, Limits(force_limit, sd_limit), progress or (lambda stage, fraction: None))
         document: dict[str, Any] = json.loads(write_convergence(study.run(), out))

@@ -72,5 +72,7 @@ def refinements_of(p: Parameters) -> list[Refinement]:
     if p["numerics.precision"] == "float":
         refinements.append(Refinement("precision", "numerics.precision = double, runs twice as long",
                                       (Step(0, {"numerics.precision": "double"}),)))
-    wider = 1.25 if 1.25 * skin <= WIDEST_SKIN else 0.8  # a correct list has no influence, whatever its margin
+    # A correct list has no influence, whatever its margin; wider ones may not fit into the container's period.
+    is_periodic = p["container.shape"] in ("periodic", "cell")
+    wider = 0.8 if is_periodic or 1.25 * skin > WIDEST_SKIN else 1.25
     return [*refinements, Refinement("list margin", "", (Step(0, {"numerics.skin": skin * wider}),))]

@@ -1,9 +1,10 @@
 """Checks whether the grains fit into their box, and how they move."""
 import math
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ..results.recording import Floats, Ints, Recording
+from ..results.recording import Bools, Recording
 from .container import apart, floor_area, wall_distance, walls_of
 from .experiment import Experiment
 from .findings import GRAINS, Findings, Frame, Tally, lengths, odd, positions_of
@@ -45,23 +46,24 @@ def _check_walls(recording: Recording) -> Findings:
     yield from tally.odd(GRAINS, "grains reach into a wall by more than half their radius: ")
 
 
-def _overlapping(recording: Recording, frame: Frame) -> tuple[Ints, Floats]:
-    """(P, 2) grains, and their overlaps [m], where these are too large."""
-    radius, pairs, overlaps = recording.diameter / 2, [np.zeros((0, 2), np.int64)], [np.zeros(0)]
+def _overlapping(recording: Recording, frame: Frame) -> Iterator[tuple[Bools, Callable[[int], str]]]:
+    """Blocks of pairs of grains: which overlap too much, and the words for one of them."""
+    radius = recording.diameter / 2
     for i, j in near_pairs(frame.position, recording.box, frame.plate_z, float(recording.diameter.max())):
         together = radius[i] + radius[j]
         overlap = together - lengths(apart(recording.box, frame.position[j], frame.position[i]))
-        much = overlap > MAX_OVERLAP * together
-        pairs.append(np.sort(np.stack((i[much], j[much]), axis=1), axis=1))
-        overlaps.append(overlap[much])
-    return np.concatenate(pairs), np.concatenate(overlaps)
+        first, second = np.minimum(i, j), np.maximum(i, j)
+
+        def example(k: int) -> str:
+            return f"grains {first[k]} and {second[k]} by {1e3 * overlap[k]:.3g} mm"
+
+        yield overlap > MAX_OVERLAP * together, example
 
 
 def _check_overlaps(recording: Recording) -> Findings:
     tally = Tally()
     for frame in positions_of(recording):
-        pairs, overlap = _overlapping(recording, frame)
-        tally.add(frame.number, np.ones(len(pairs), bool), lambda k: f"grains {pairs[k, 0]} and {pairs[k, 1]} by {1e3 * overlap[k]:.3g} mm")
+        tally.add_parts(frame.number, _overlapping(recording, frame))
     yield from tally.odd(GRAINS, f"grains overlap by more than {MAX_OVERLAP} of their radii together: ")
 
 

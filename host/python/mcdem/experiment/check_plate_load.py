@@ -58,5 +58,5 @@ def _check_force(experiment: Experiment, loads: Loads, largest: float) -> Findin
     ratio = upper_median(force[known] / hertz[known])
     if ratio > MAX_FORCE_RATIO or ratio < 1 / MAX_FORCE_RATIO:
         yield odd(PLATE, f"the top force is {ratio:.2g} times that of Hertz's law from the overlaps with the plate: are its unit, "
-                         "plate.start, the height of the grains and their modulus right, and do the frames of the grains belong to these rows of "
-                         "the plate?")
+                         "plate.start, the height of the grains and their modulus right, and do the frames of the grains belong to these "
+                         "rows of the plate?")

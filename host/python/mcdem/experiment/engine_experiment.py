@@ -10,7 +10,7 @@ def engine_experiment(experiment: Experiment) -> _engine.Experiment:
     recording, scans = experiment.recording, experiment.recording.scans
     columns = ("cycle", "phase", "time", "plate_z", "wall_force", "coordination_number", "mean_force", "branch_length", "position")
     fields = {name: getattr(scans, name) for name in columns} | {
-        "name": experiment.name, "parameters": recording.parameters, "shape": recording.box.shape.value,
+        "name": experiment.name.encode(errors="replace").decode(), "parameters": recording.parameters, "shape": recording.box.shape.value,
         "size": (recording.box.size_x, recording.box.size_y), "plate_start": recording.plate_start,
         "diameter": recording.diameter.tolist(),
         "contacts": [(one.grain, one.partner, one.point, one.force) for one in scans.contacts],

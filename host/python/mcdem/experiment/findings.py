@@ -1,6 +1,6 @@
 """What the checks of an experiment share: findings, and frames with positions or contacts."""
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -52,6 +52,13 @@ class Tally:
             self._first = self._first or f"first in frame {frame}: {example(int(which.argmax()))}"
             self.count += int(which.sum())
             self._frames += 1
+
+    def add_parts(self, frame: int, parts: Iterable[tuple[Bools, Callable[[int], str]]]) -> None:
+        """Those of a frame whose items come in several parts."""
+        before = self._frames
+        for which, example in parts:
+            self.add(frame, which, example)
+        self._frames = min(self._frames, before + 1)
 
     def add_frames(self, frames: Ints, which: Bools, example: Callable[[int], str]) -> None:
         """The true ones of several frames; `example` gives the words for one of them."""

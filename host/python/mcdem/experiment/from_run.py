@@ -11,6 +11,7 @@ from ..problems import to_number
 from ..program import say
 from ..results.engine_run import run_of
 from ..results.parameters import value_of
+from ..results.read import read_run
 from ..results.recording import NO_CONTACTS, NO_VECTORS, Recording, Run
 from .experiment import MATERIALS, Experiment, Measurement
 from .publish import expect_free, publish, read_back, work_folder
@@ -40,13 +41,13 @@ def write_from_run(options: Options) -> str:
     from .. import _engine
     expect_free(options.out)
     uncertainty = read_uncertainty(options.uncertainty)
-    run = _engine.read(options.run)
+    run = _engine.read_replica(options.run, chosen_replica(read_run(options.run), options))
     try:
-        replica, truth = _chosen_recording(run_of(run), options)
+        truth = _whole_recording(run_of(run), options)
     except UnicodeDecodeError as error:
         raise InputError(f"{options.run}: holds a text that is not UTF-8 ({error.reason})") from error
     expect_measurable(truth, options)
-    seen = run_of(_engine.measured(run, replica, options.instrument, options.seed)).recordings[0]
+    seen = run_of(_engine.measured(run, options.instrument, options.seed)).recordings[0]
     measured = experiment_from(replace(seen, label=truth.label), options.measurement)
     experiment = replace(measured, uncertainty=uncertainty, name=options.name or measured.name)
     _write(experiment, options)
@@ -128,10 +129,9 @@ def _expect_all_scans(truth: Recording) -> None:
                          "end, with protocol.scan_at_start = true")
 
 
-def _chosen_recording(run: Run, options: Options) -> tuple[int, Recording]:
-    """The number of a recording, and the recording with its run's name in its label. Raises InputError."""
-    number = chosen_replica(run, options)
-    found = run.recordings[number]
+def _whole_recording(run: Run, options: Options) -> Recording:
+    """The only recording, with its run's name in its label. Raises InputError."""
+    found = run.recordings[0]
     truth, scans = replace(found, label=run.name + (f", {found.label}" if found.label else "")), found.scans
     if not len(truth.diameter):
         raise InputError(f"{options.run}: holds no grains of this replica")
@@ -141,7 +141,7 @@ def _chosen_recording(run: Run, options: Options) -> tuple[int, Recording]:
         raise InputError(f"{options.run}: frame {frame} of this replica has a top force or plate position that is not a number")
     if truth.failure:
         say(f"{truth.label} stopped early: {truth.failure.cause}")
-    return number, truth
+    return truth
 
 
 def _write(experiment: Experiment, options: Options) -> None:

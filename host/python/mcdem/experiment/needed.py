@@ -1,5 +1,8 @@
 """Whether an experiment can be diagnosed, before anything is simulated."""
+from dataclasses import replace
+
 from ..results.names import Phase
+from ..results.recording import NO_CONTACTS, NO_VECTORS
 from .experiment import Experiment
 
 
@@ -26,7 +29,10 @@ def _missing_forces(experiment: Experiment) -> list[str]:
     """Points of the comparison without a force on the plate."""
     from .. import _engine
     from .engine_experiment import engine_experiment
-    displacements, known, needed = _engine.compared_forces(engine_experiment(experiment))
+    recording, count = experiment.recording, len(experiment.recording.scans)
+    scans = replace(recording.scans, position=(NO_VECTORS,) * count, contacts=(NO_CONTACTS,) * count)
+    plate = replace(experiment, recording=replace(recording, scans=scans))  # large tables are not copied for it
+    displacements, known, needed = _engine.compared_forces(engine_experiment(plate))
     if known >= needed:
         return []
     places = ", ".join(f"{1e3 * displacement:.3g}" for displacement in displacements)

@@ -36,14 +36,14 @@ class Kind:
     must: Callable[[str], str]  # "must be .., got .." for a word that is not valid
     is_whole: bool = True
 
-    def values(self, words: Sequence[str], is_plain: bool) -> NDArray[Any]:
-        """`is_plain`: Python reads the words as numbers as `parse` does."""
+    def values(self, words: Sequence[str], is_ascii: bool) -> NDArray[Any]:
+        """`is_ascii`: then Python reads words without underscores as `parse` does."""
         if self.is_whole:
             known = {word: self.parse(word.strip(BLANKS)) for word in set(words)}
             values = {word: WRONG if value is None else int(value) for word, value in known.items()}
             return np.fromiter(map(values.__getitem__, words), np.int64, len(words))
         try:
-            numbers = np.array(list(map(float, words))) if is_plain else None
+            numbers = np.array(list(map(float, words))) if is_ascii and "_" not in "".join(words) else None
         except ValueError:
             numbers = None
         if numbers is None:
@@ -155,7 +155,7 @@ def _text_of(file: pathlib.Path, largest: int, problems: Problems) -> bytes | No
     try:
         text = read_input(file)
         if text.startswith(b"\x1f\x8b"):
-            text = gzip.GzipFile(fileobj=io.BytesIO(text)).read(largest + 1)
+            text = _unpacked(text, largest)
     except (EOFError, gzip.BadGzipFile, zlib.error) as error:
         problems.add(str(file), f"cannot be unpacked ({error}): pack it again with gzip")
         return None
@@ -163,6 +163,15 @@ def _text_of(file: pathlib.Path, largest: int, problems: Problems) -> bytes | No
     if failure:
         problems.add(str(file), failure)
     return None if failure else text.removeprefix(b"\xef\xbb\xbf")
+
+
+def _unpacked(packed: bytes, largest: int) -> bytes:
+    """Up to about one block more than `largest`, block by block: read(largest) would allocate all of it at once."""
+    file, blocks, size = gzip.GzipFile(fileobj=io.BytesIO(packed)), list[bytes](), 0
+    while size <= largest and (block := file.read(1 << 16)):
+        blocks.append(block)
+        size += len(block)
+    return b"".join(blocks)
 
 
 def _failure_of(text: bytes, largest: int) -> str:
@@ -231,7 +240,7 @@ class _Rows:
 
     def _read_block(self, block: bytes, line: int) -> int:
         """Returns the number of its lines."""
-        text, is_plain = block.decode(errors="replace"), block.isascii() and b"_" not in block
+        text, is_ascii = block.decode(errors="replace"), block.isascii()
         if words := self._regular_words(text):
             count = len(words) // self.width
             lines = np.arange(line, line + count)
@@ -242,7 +251,7 @@ class _Rows:
             lines = np.array([number for number, _ in rows], np.int64)
             columns = {column: [row[place] for _, row in rows] for column, place in self.place.items()}
         for column, of_column in columns.items():
-            self._add(column, of_column, is_plain)
+            self._add(column, of_column, is_ascii)
         self.line.append(lines)
         self.read_count += len(lines)
         self.count += len(lines)
@@ -270,8 +279,8 @@ class _Rows:
             if len(self.others) < MAX_TOLD:
                 self.others.append((number, len(words)))
 
-    def _add(self, column: str, words: Sequence[str], is_plain: bool) -> None:
-        values = self.kinds[column].values(words, is_plain)
+    def _add(self, column: str, words: Sequence[str], is_ascii: bool) -> None:
+        values = self.kinds[column].values(words, is_ascii)
         self.values[column].append(values)
         for row in np.flatnonzero(self.kinds[column].wrong(values))[:MAX_TOLD - len(self.words[column])].tolist():
             self.words[column][self.read_count + row] = words[row].strip(BLANKS)
