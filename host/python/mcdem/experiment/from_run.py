@@ -11,7 +11,6 @@ from ..problems import to_number
 from ..program import say
 from ..results.engine_run import run_of
 from ..results.parameters import value_of
-from ..results.read import read_run
 from ..results.recording import NO_CONTACTS, NO_VECTORS, Recording, Run
 from .experiment import MATERIALS, Experiment, Measurement
 from .publish import expect_free, publish, read_back, work_folder
@@ -41,8 +40,9 @@ def write_from_run(options: Options) -> str:
     from .. import _engine
     expect_free(options.out)
     uncertainty = read_uncertainty(options.uncertainty)
-    run = _engine.read_replica(options.run, chosen_replica(read_run(options.run), options))
     try:
+        header = run_of(_engine.read(options.run, what="observables"))
+        run = _engine.read_replica(options.run, chosen_replica(header, options))
         truth = _whole_recording(run_of(run), options)
     except UnicodeDecodeError as error:
         raise InputError(f"{options.run}: holds a text that is not UTF-8 ({error.reason})") from error
