@@ -5,7 +5,7 @@ from unittest import main
 
 import numpy as np
 from numpy.testing import assert_array_equal
-from small_folder import SMALL, TABLES, FolderCase
+from small_folder import SMALL, STAGES, TABLES, FolderCase
 
 from mcdem.errors import InputError, RunError
 from mcdem.experiment.experiment import Measurement
@@ -59,23 +59,7 @@ SPOILED = (
     ("contacts.csv", "1,1,floor", "0,1,floor", "4: frames must be in order, got 0 after 1"),
     ("contacts.csv", "1,0,floor", "3,0,floor", "3: frame must be one of plate.csv, 0 to 2, got 3"),
     ("contacts.csv", "1,1,0,0.02", "1,1,0,20", "2: x_m, y_m and z_m must lie in the box"))
-# Down to 19 mm and a hold there, then up to 0.1 N and a hold there.
-STAGES = """[plate]
-start = 0.022
-[[programme]]
-position = 0.019
-[[programme]]
-stage = "hold"
-time = 2.0
-scan_at = [0.5, 2.0]
-[[programme]]
-force = 0.1
-[[programme]]
-stage = "hold"
-keep = "force"
-time = 4
-scans = 2
-"""
+PROGRAMME = STAGES + "scans = 2\n"  # of the last hold
 ROWS = """frame,cycle,phase,plate_z_m,top_force_N,set_force_N,time_s
 0,0,load,0.022,0,,0.1
 1,0,load,0.019,0.4,,1.1
@@ -272,7 +256,7 @@ class Problems(FolderCase):
 class Programmes(FolderCase):
     def setUp(self):
         super().setUp()
-        self.texts["experiment.toml"] += STAGES
+        self.texts["experiment.toml"] += PROGRAMME
         self.texts["plate.csv"] = ROWS
 
     def test_are_read_with_their_times(self):
@@ -336,7 +320,7 @@ class Programmes(FolderCase):
                                ('keep = "force"', "keep = 3", "programme.4.keep must be one of position, force, stress, got 3"),
                                ("start = 0.022\n", "", "[[programme]] requires plate.start")):
             with self.subTest(told):
-                self.texts["experiment.toml"] = SMALL["experiment.toml"] + STAGES
+                self.texts["experiment.toml"] = SMALL["experiment.toml"] + PROGRAMME
                 self.replace("experiment.toml", old, new)
                 self.assertTrue(any(told in problem for problem in self.problems()), self.problems())
 

@@ -5,43 +5,15 @@ import tempfile
 import unittest
 from dataclasses import replace
 
+from small_folder import SMALL, STAGES
+
 from mcdem.experiment import toml_lines
 from mcdem.experiment.experiment import Measurement
 from mcdem.experiment.settings import parse_settings, read_settings, settings_text
 from mcdem.problems import Problems
 from mcdem.results import Box, ContainerShape
 
-TEXT = """name = "two grains"
-[box]
-size = [0.04, 0.03]
-[grains]
-youngs_modulus = 23300.0
-poisson_ratio = 0.5
-friction = 0.03
-[walls]
-youngs_modulus = 50e6
-[uncertainty]
-youngs_modulus = 500.0
-walls.youngs_modulus = 1e6
-[measurement]
-position_error = 1e-4
-force_threshold = 0.005
-"""
-STAGES = """[plate]
-start = 0.022
-[[programme]]
-position = 0.019
-[[programme]]
-stage = "hold"
-time = 2.0
-scan_at = [0.5, 2.0]
-[[programme]]
-force = 0.1
-[[programme]]
-stage = "hold"
-keep = "force"
-time = 4
-"""
+TEXT = SMALL["experiment.toml"]
 NO_KEY = "is not a key of an experiment: remove it, or see its README for the names"
 
 # text of TEXT, another one, beginning of the first problem

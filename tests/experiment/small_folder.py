@@ -44,6 +44,22 @@ force_threshold = 0.005
 1,0,plate,0.0095,0.015,0.019,0,0,-0.2
 1,0,x_min,0,0.015,0.0095,0.004,0,0
 """}
+# Down to 19 mm and a hold there, then up to 0.1 N and a hold there.
+STAGES = """[plate]
+start = 0.022
+[[programme]]
+position = 0.019
+[[programme]]
+stage = "hold"
+time = 2.0
+scan_at = [0.5, 2.0]
+[[programme]]
+force = 0.1
+[[programme]]
+stage = "hold"
+keep = "force"
+time = 4
+"""
 TABLES = ("plate.csv", "grains.csv", "contacts.csv")
 
 

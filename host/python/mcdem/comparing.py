@@ -1,7 +1,7 @@
 """mcdem.compare: the metrics of the paper for users of Python."""
-import math
 from typing import TYPE_CHECKING, Any
 
+from .json_text import finite
 from .look import Path
 
 if TYPE_CHECKING:
@@ -31,9 +31,5 @@ def _values(comparison: "Comparison") -> dict[str, Any]:
     values: dict[str, Any] = {"setting": comparison.setting, "replicas": comparison.replicas}
     for name in ("Rtop", "errf", "errZ", "bhat", "tau"):
         estimate = getattr(comparison, name)
-        values |= {name: _known(estimate.value), f"{name}_standard_error": _known(estimate.standard_error)}
+        values |= {name: finite(estimate.value), f"{name}_standard_error": finite(estimate.standard_error)}
     return values | {"notes": comparison.notes}
-
-
-def _known(number: float) -> float | None:
-    return number if math.isfinite(number) else None

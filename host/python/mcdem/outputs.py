@@ -120,14 +120,21 @@ def output_folder(folder: Path, shared: bool = False) -> Iterator[pathlib.Path]:
     if is_file(folder):
         raise InputError(f"{folder}: is a file; give a folder for the results")
     make_folder(folder)
+    with locked_folder(folder, shared):
+        _expect_no_experiment(folder)  # may have been created by another program in the meantime
+        yield pathlib.Path(folder)
+
+
+@contextlib.contextmanager
+def locked_folder(folder: Path, shared: bool = False) -> Iterator[None]:
+    """The lock of output_folder on a folder that is there, with its errors."""
     try:
         descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     except OSError as error:
         raise RunError(f"{folder}: cannot be opened: {error.strerror}") from error
     try:
         _lock(descriptor, folder, shared)
-        _expect_no_experiment(folder)  # may have been created by another program in the meantime
-        yield pathlib.Path(folder)
+        yield
     finally:
         os.close(descriptor)
 

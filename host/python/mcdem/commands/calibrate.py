@@ -8,7 +8,7 @@ from ..parts import interruptible
 from ..program import say
 from ..progress import Progress
 from .command_line import at_least_zero, output_path, whole_in
-from .scene_options import add_scene_options, read_scene
+from .scene_options import add_device_option, add_scene_options, read_scene
 from .sources import add_reference_options
 
 if TYPE_CHECKING:
@@ -33,8 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--model", metavar="MODEL", default="mc_dem",
                         help="mc_dem: fit gamma; any other contact model: fit Young's modulus of the grains")
     parser.add_argument("--out", metavar="DIR", type=output_path, help="Folder for calibration.json")
-    parser.add_argument("--device", metavar="DEVICE", default="",
-                        help="Number or part of the name of a device, as listed by `mcdem devices`")
+    add_device_option(parser)
     parser.add_argument("--low", metavar="VALUE", type=at_least_zero, default=0.5,
                         help="Lower end of the search: gamma, or E divided by the scene's E")
     parser.add_argument("--high", metavar="VALUE", type=at_least_zero, default=1.5,

@@ -6,7 +6,7 @@ import re
 from ..parts import interruptible
 from ..progress import Progress
 from .command_line import at_least_zero, names, number_in, output_path, whole_in
-from .scene_options import add_scene_options, read_scene
+from .scene_options import add_device_option, add_scene_options, read_scene
 
 EPILOG = """\
 The same command continues where an interrupted one stopped.
@@ -43,8 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(_option(name), metavar="N", type=_whole, default=number, help=text)
     for name, (value, unit, check, text) in MEASUREMENT.items():
         parser.add_argument(_option(name), metavar=unit, type=check, default=value, help=text)
-    parser.add_argument("--device", metavar="DEVICE", default="",
-                        help="Number or part of the name of a device, as listed by `mcdem devices`")
+    add_device_option(parser)
 
 
 def _whole(text: str) -> int:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import _engine as engine
-from ..diagnosis.observables import Cell, Grid, cells_of, observables
+from ..diagnosis.observables import Cell, Grid, cells_of, grid_from, observables
 from ..errors import InputError
 from ..look import Path
 from ..outputs import CONVERGENCE, expect_replaceable, output_folder, remove_temporaries
@@ -77,8 +77,7 @@ class Study:
                            time.monotonic() - begin)
 
     def _find_grid(self) -> Grid:
-        found = self._simulator.find_grid(self._stage("the programme's displacements"))
-        return Grid(found["displacement"], found["width"], found["stroke"], found["force"])
+        return grid_from(self._simulator.find_grid(self._stage("the programme's displacements")))
 
     def _baseline(self, cells: list[Cell], first: int) -> tuple[Baseline, str]:
         """The scene's replicas, and a description of them."""

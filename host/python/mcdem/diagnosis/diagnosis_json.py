@@ -1,12 +1,11 @@
 """Diagnoses as JSON; host/diagnose/DIAGNOSIS_OUTPUT.md describes the keys, mcdem.report.diagnosis reads them."""
 import dataclasses
-import json
 import math
-import re
 import types
 import typing
 from typing import Any
 
+from ..json_text import json_text
 from .diagnosis_types import Diagnosis
 
 
@@ -41,4 +40,4 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
     """Indented JSON with keys in the documented order and a final line feed. Numbers that are not finite become null; what was
     invalid UTF-8 becomes replacement characters."""
     written = _object(dataclasses.replace(diagnosis, provenance=dict(sorted(diagnosis.provenance.items()))))
-    return re.sub("[\ud800-\udfff]", "\ufffd", json.dumps(written, indent=2, ensure_ascii=False, allow_nan=False)) + "\n"
+    return json_text(written)

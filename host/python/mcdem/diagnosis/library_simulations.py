@@ -4,10 +4,9 @@ from collections.abc import Callable
 from .. import _engine as engine
 from ..look import Path, is_there
 from ..outputs import remove_temporaries_of
-from ..results.names import Phase
 from .library import Library, read_library
 from .library_origin import expect_library_of, expect_origin
-from .observables import Grid, HoldScans
+from .observables import Grid, grid_from
 from .signature import learn_signature
 
 Progress = Callable[[float], object]
@@ -15,9 +14,7 @@ Progress = Callable[[float], object]
 
 def grid_of(simulations: engine.Simulations) -> Grid:
     """The displacements at which they are compared with the experiment."""
-    values = simulations.grid
-    values["holds"] = [HoldScans(**(hold | {"phase": Phase(hold["phase"])})) for hold in values["holds"]]
-    return Grid(**values)
+    return grid_from(simulations.grid)
 
 
 def compare_at(simulations: engine.Simulations, grid: Grid) -> None:

@@ -1,7 +1,9 @@
 """An observation: one number for each observable, phase and displacement, which is called a cell (host/diagnose/observe/observation.h)."""
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -53,6 +55,13 @@ class Grid:
     force: list[float] = field(default_factory=list)  # where the programme sets forces: those of the experiment while loading [N]
     force_width: float = 0  # [N]
     holds: list[HoldScans] = field(default_factory=list)  # of the programme, in order
+
+
+def grid_from(values: Mapping[str, Any]) -> Grid:
+    """The grid that the compiled module gives as a dict (host/python/grid_dict.h)."""
+    holds = [HoldScans(**(hold | {"phase": Phase(hold["phase"])})) for hold in values["holds"]]
+    of_all: dict[str, Any] = {**values, "holds": holds}
+    return Grid(**of_all)
 
 
 @dataclass(frozen=True)

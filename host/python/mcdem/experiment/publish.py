@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from ..errors import InputError, RunError
 from ..files import read_input, read_whole, unfinished
 from ..look import is_file, is_folder, is_link, is_there, leads_somewhere
-from ..outputs import make_folder_of, output_folder, remove_temporaries_of
+from ..outputs import locked_folder, make_folder_of, output_folder, remove_temporaries_of
 from ..program import message_of
 from .experiment import Experiment
 from .read import read_experiment
@@ -101,21 +101,9 @@ def _new_folder(place: pathlib.Path) -> tuple[pathlib.Path, int]:
 def _remove_unfinished(out: pathlib.Path) -> None:
     if not (is_folder(out) and is_there(out / JOURNAL)):
         return
-    descriptor = os.open(out, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        with contextlib.suppress(OSError):  # some network file systems have no locks
-            _lock_alone(descriptor, out)
+    with locked_folder(out):
         if is_there(out / JOURNAL):
             _remove_listed(out)
-    finally:
-        os.close(descriptor)
-
-
-def _lock_alone(descriptor: int, out: pathlib.Path) -> None:
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise InputError(f"{out}: another program is writing there: wait for it, or give another folder") from None
 
 
 def _remove_listed(out: pathlib.Path) -> None:

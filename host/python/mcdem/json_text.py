@@ -1,0 +1,20 @@
+"""Results as JSON."""
+import json
+import math
+import re
+from typing import Any
+
+
+def finite(value: Any) -> Any:
+    """The value with None for numbers that are not finite, and lists for tuples."""
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, (tuple, list)):
+        return [finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def json_text(document: Any, sort_keys: bool = False) -> str:
+    """Indented, with a final line feed; what was invalid UTF-8 becomes replacement characters. All numbers must be finite."""
+    text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False, sort_keys=sort_keys)
+    return re.sub("[\ud800-\udfff]", "\ufffd", text) + "\n"
