@@ -6,8 +6,10 @@
 #include <charconv>
 
 #include "core/version.h"
+#include "ensemble/diagnosis/diagnosis_plan.h"
 #include "ensemble/parts/manifest.h"
 #include "python/bindings.h"
+#include "scene/programme/legs.h"
 #include "scene/read/read_scene.h"
 #include "scene/read/scene_warnings.h"
 
@@ -134,6 +136,14 @@ void bind_scene(py::module_& module) {
         },
         py::arg("file"), py::arg("overrides"),
         "A scene file with overrides \"key=value\", and warnings about its packing files.");
+    module.def("expect_plain_strokes", &expect_plain_strokes, py::arg("scene"), py::arg("what"),
+               "Refuses cells, species and programmes, which `what` does not support.");
+    module.def(
+        "other_materials",
+        [](const Scene& scene, const std::map<std::string, double>& stated) {
+            return other_materials(scene.replicas.front(), stated);
+        },
+        py::arg("scene"), py::arg("stated"), "Stated materials that the first replica does not have.");
     module.def(
         "manifest_of", [](const Scene& scene) { return manifest_of(scene, version_text); }, py::arg("scene"),
         "Everything but the device that determines the bits of a run: names and digests.");

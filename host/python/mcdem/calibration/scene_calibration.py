@@ -9,14 +9,13 @@ import numpy as np
 
 from ..errors import InputError
 from ..experiment.experiment import MATERIALS
-from ..number_text import shortest
 from ..observe.estimate import Estimate, mean_over_replicas
 from ..observe.levels import group_levels, level_tolerance
 from ..observe.replicas import MODEL, SEED, Replicas
 from ..observe.top_force import full_stroke, top_force_at
 from ..results.engine_run import run_of
-from ..results.names import ContactModel, ContainerShape, all_names, parse
-from ..results.parameters import Parameters, has_programme, keys_that_vary
+from ..results.names import ContactModel, all_names, parse
+from ..results.parameters import Parameters, keys_that_vary
 from ..results.recording import Floats
 from .search import Bracket, Calibration, SearchOptions, find_value
 
@@ -83,16 +82,17 @@ def calibrate_scene(scene: "Scene", reference: Replicas, options: Options, progr
     A value counts as running away if at least half of its replicas do; otherwise the mean is over the others. Raises InputError,
     RunError.
     """
+    from .._engine import Batch, expect_plain_strokes
+    expect_plain_strokes(scene, "a calibration")
     parameters = _parameters(scene)
     _check(parameters)
-    _note_other_materials(parameters[0], reference, options.model, note)
+    _note_other_materials(scene, reference, options.model, note)
     levels = group_levels(reference)
     displacement = full_stroke(levels, reference)
     _check_stroke(parameters[0], displacement)
     target = mean_over_replicas(top_force_at(levels, reference, displacement).value)
     modulus = 0.0 if options.model == ContactModel.mc_dem else float(parameters[0][MODULUS])
     search = replace(options.search, what="E over the scene's") if modulus else options.search
-    from .._engine import Batch
     trials = _Trials(Batch(scene_of_model(scene, options.model), options.device), parameters[0], modulus, displacement)
     found = find_value(lambda values: trials.top_forces(values, lambda rounds: progress(rounds / search.rounds)), target.value,
                        options.bracket, search)
@@ -110,29 +110,19 @@ def _parameters(scene: "Scene") -> list[Parameters]:
 
 
 def _check(parameters: Sequence[Parameters]) -> None:
-    """Raises InputError for a scene that cannot be calibrated."""
-    if any(one["container.shape"] == ContainerShape.cell for one in parameters):
-        raise InputError("container.shape: must be one with a plate for a calibration, got cell: it compares strokes of a plate")
-    if any("species.1.name" in one for one in parameters):
-        raise InputError("species: must be left out of a scene for a calibration, which supports one material only")
-    if any(map(has_programme, parameters)):
-        raise InputError("programme: must be left out of a scene for a calibration, which compares the strokes of [plate] and [protocol] "
-                         "only")
+    """Raises InputError where more than the packing and the searched parameter varies."""
     problems = [f"calibrate: {key} must be the same for all replicas: give one value with --set {key}=.."
                 for key in keys_that_vary(parameters) if key not in LEFT_ASIDE]
     if problems:
         raise InputError(problems)
 
 
-def _note_other_materials(parameters: Parameters, reference: Replicas, model: ContactModel, note: Callable[[str], object]) -> None:
+def _note_other_materials(scene: "Scene", reference: Replicas, model: ContactModel, note: Callable[[str], object]) -> None:
     """Materials that the reference states and the scene does not have: the calibrated parameter would make up for them."""
-    others = []
-    for key in sorted(MATERIALS):
-        stated, text = reference[0].value(key), parameters[key]
-        is_searched = key == MODULUS and model != ContactModel.mc_dem
-        if isinstance(stated, (int, float)) and text and not is_searched and abs(float(text) - stated) > 1e-6 * abs(stated):
-            others.append(f"{key} = {shortest(stated)} (scene: {shortest(float(text))})")
-    if others:
+    from .._engine import other_materials
+    searched = {MODULUS} if model != ContactModel.mc_dem else set()
+    values = {key: reference[0].value(key) for key in MATERIALS if key not in searched}
+    if others := other_materials(scene, {key: value for key, value in values.items() if isinstance(value, (int, float))}):
         note(f"the reference has {', '.join(others)}: the calibrated value makes up for the difference; change the scene with --set if the "
              "reference is right")
 
