@@ -24,7 +24,7 @@ install(DIRECTORY host/python/mcdem DESTINATION ${share}/mcdem/python COMPONENT 
 install(DIRECTORY scenes DESTINATION ${share}/mcdem COMPONENT program)
 
 # The engine: all floors below the command line and the Python module.
-set(floors core elasticity scene cl sim io experiment diagnose ensemble)
+set(floors core elasticity scene cl sim io ensemble)
 add_library(mcdem_engine INTERFACE)
 target_link_libraries(mcdem_engine INTERFACE mcdem_ensemble)
 set_target_properties(mcdem_engine PROPERTIES EXPORT_NAME mcdem)

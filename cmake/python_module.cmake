@@ -25,7 +25,7 @@ endif()
 
 file(GLOB sources CONFIGURE_DEPENDS host/python/*.cpp)
 Python3_add_library(mcdem_python MODULE WITH_SOABI ${sources})
-target_link_libraries(mcdem_python PRIVATE mcdem_version mcdem_ensemble mcdem_experiment
+target_link_libraries(mcdem_python PRIVATE mcdem_version mcdem_ensemble
   pybind11::headers)
 set_target_properties(mcdem_python PROPERTIES OUTPUT_NAME _engine CXX_VISIBILITY_PRESET hidden
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/python/mcdem)

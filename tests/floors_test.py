@@ -14,11 +14,9 @@ FLOORS = {
     "scene": ["core"],
     "sim": ["scene", "elasticity", "cl", "core"],
     "io": ["scene", "core"],
-    "experiment": ["scene", "core"],
-    "diagnose": ["experiment", "scene", "core"],
-    "ensemble": ["diagnose", "sim", "io", "experiment", "scene", "cl", "core"],
-    "cli": ["ensemble", "diagnose", "sim", "io", "experiment", "scene", "cl", "core"],
-    "python": ["ensemble", "diagnose", "sim", "io", "experiment", "scene", "cl", "core"],
+    "ensemble": ["sim", "io", "scene", "cl", "core"],
+    "cli": ["ensemble", "sim", "io", "scene", "cl", "core"],
+    "python": ["ensemble", "sim", "io", "scene", "cl", "core"],
 }
 # Room of the Python package -> the rooms that it may import. All may import the modules that are in no room.
 ROOMS = {
@@ -29,10 +27,10 @@ ROOMS = {
     "exporting": ["results"],
     "calibration": ["observe", "experiment", "results"],
     "diagnosis": ["observe", "experiment", "results"],
-    "convergence": ["diagnosis", "observe", "results"],
+    "convergence": ["diagnosis", "observe", "experiment", "results"],
     "report": ["convergence", "diagnosis", "observe", "experiment", "results"],
     "figures": ["report"],
-    "challenge": ["report", "diagnosis", "experiment", "results"],
+    "challenge": ["report", "diagnosis", "observe", "experiment", "results"],
     "commands": ["challenge", "figures", "report", "convergence", "diagnosis", "calibration", "observe", "exporting", "experiment",
                  "importing", "results"],
 }

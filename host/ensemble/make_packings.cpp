@@ -74,20 +74,38 @@ std::vector<Packing> make_packings(const Scene& scene, const StopWanted& stop_wa
     return packings;
 }
 
+namespace {
+
+bool is_on_last_way_back(const Replica& replica, const Scan& scan) {
+    return replica.programme.empty() && scan.phase == Phase::unload &&
+           scan.cycle + 1 >= replica.protocol.cycles;
+}
+
+}  // namespace
+
 std::vector<Recording> simulate(Device& device, const Scene& scene, const std::vector<Packing>& packings,
-                                std::size_t scans_needed,
-                                const std::function<void(double fraction)>& on_progress) {
+                                const SimulateOptions& options) {
     std::vector<Recording> recordings;
     for (std::size_t r = 0; r < packings.size(); ++r)
         recordings.push_back(begin_recording(scene.replicas[r], packings[r]));
-    const auto keep = [&](int r, Scan scan) { recordings[r].scans.push_back(std::move(scan)); };
-    const auto note = [&](int r, const Failure& failure) { recordings[r].failure = failure; };
-    const auto complete = [&](const Recording& recording) {
-        return recording.failure || recording.scans.size() >= scans_needed;
-    };
     Simulation simulation(device, scene, packings);
-    while (!std::all_of(recordings.begin(), recordings.end(), complete) && simulation.advance(keep, note))
-        on_progress(simulation.progress());
+    const auto keep = [&](int r, Scan scan) {
+        const auto place = static_cast<std::size_t>(r);
+        Recording& recording = recordings[place];
+        recording.scans.push_back(std::move(scan));
+        const Scan& last = recording.scans.back();
+        if (!options.end_below.empty() && is_on_last_way_back(scene.replicas[place], last) &&
+            recording.displacement(last) < options.end_below[place])
+            simulation.end(r);
+    };
+    const auto note = [&](int r, const Failure& failure) {
+        recordings[static_cast<std::size_t>(r)].failure = failure;
+    };
+    const auto complete = [&](const Recording& recording) {
+        return recording.failure || recording.scans.size() >= options.scans_needed;
+    };
+    while (!std::ranges::all_of(recordings, complete) && simulation.advance(keep, note))
+        options.on_progress(simulation.progress());
     return recordings;
 }
 

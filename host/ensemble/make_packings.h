@@ -1,5 +1,6 @@
 // Initial packings of all replicas of a scene, and runs in memory.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -14,10 +15,19 @@ namespace mcdem::inline ensemble {
 /// work. Throws InputError with all problems, Interrupted.
 std::vector<Packing> make_packings(const Scene& scene, const StopWanted& stop_wanted = never_stop);
 
-/// Runs a scene without files: one recording per replica. Ends early when every replica has failed or has
-/// `scans_needed` scans. `on_progress` receives the completed fraction of the whole protocol.
-std::vector<Recording> simulate(
-    Device& device, const Scene& scene, const std::vector<Packing>& packings, std::size_t scans_needed,
-    const std::function<void(double fraction)>& on_progress = [](double) {});
+/// When a simulation without files ends before its protocol does, and whom it tells.
+struct SimulateOptions {
+    /// Ends when every replica has failed or has this many scans.
+    std::size_t scans_needed = SIZE_MAX;
+    /// By replica, or empty: a replica ends where on its last way back the displacement of the plate is less
+    /// [m].
+    std::vector<double> end_below = {};
+    /// Receives the completed fraction of the whole protocol; may throw.
+    std::function<void(double fraction)> on_progress = [](double) {};
+};
+
+/// Runs a scene without files: one recording per replica.
+std::vector<Recording> simulate(Device& device, const Scene& scene, const std::vector<Packing>& packings,
+                                const SimulateOptions& options);
 
 }  // namespace mcdem::ensemble

@@ -22,7 +22,7 @@ public:
 
     /// For each of `changes` all replicas of the scene with these values.
     SharedRun simulate(const std::vector<KeyValues>& changes, std::size_t scans,
-                       const TrialOptions& options) {
+                       const WatchOptions& options) {
         Scene all = scene_;
         all.replicas.clear();
         std::vector<Packing> packings;
@@ -36,10 +36,11 @@ public:
         }
         auto run = std::make_shared<Run>(Run{
             all.name, all.text, version_text, device_.description(), std::string(name(all.precision)), {}});
-        run->recordings = mcdem::simulate(device_, all, packings, scans, [&](double part) {
-            options.on_progress(part);
-            if (options.stop_wanted()) throw Interrupted();
-        });
+        run->recordings = mcdem::simulate(device_, all, packings, {scans, {}, [&](double part) {
+                                                                       options.on_progress(part);
+                                                                       if (options.stop_wanted())
+                                                                           throw Interrupted();
+                                                                   }});
         return run;
     }
 

@@ -14,14 +14,10 @@ void bind_scene(pybind11::module_& module);
 void bind_results(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
 void bind_batch(pybind11::module_& module);
-void bind_experiment(pybind11::module_& module);
+void bind_packings(pybind11::module_& module);
 void bind_programmes(pybind11::module_& module);
-void bind_convergence_simulator(pybind11::module_& module);
 void bind_path(pybind11::module_& module);
 void bind_random(pybind11::module_& module);
-void bind_simulations(pybind11::module_& module);
-void bind_case_simulator(pybind11::module_& module);
-void bind_diagnosis_tables(pybind11::module_& module);
 
 /// Converts values of scene keys to int, float, bool or str; None for an empty text.
 pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);

@@ -60,12 +60,8 @@ PYBIND11_MODULE(_engine, module) {
     mcdem::bind_results(module);
     mcdem::bind_simulation(module);
     mcdem::bind_programmes(module);
-    mcdem::bind_experiment(module);
+    mcdem::bind_packings(module);
     mcdem::bind_batch(module);
-    mcdem::bind_convergence_simulator(module);
     mcdem::bind_path(module);
     mcdem::bind_random(module);
-    mcdem::bind_simulations(module);
-    mcdem::bind_case_simulator(module);
-    mcdem::bind_diagnosis_tables(module);
 }

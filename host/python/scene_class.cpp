@@ -6,10 +6,11 @@
 #include <charconv>
 
 #include "core/version.h"
-#include "ensemble/diagnosis/diagnosis_plan.h"
 #include "ensemble/parts/manifest.h"
 #include "python/bindings.h"
 #include "scene/programme/legs.h"
+#include "scene/read/change_scene.h"
+#include "scene/read/keys.h"
 #include "scene/read/read_scene.h"
 #include "scene/read/scene_warnings.h"
 
@@ -83,14 +84,57 @@ KeyValues key_values(const py::dict& values) {
     return texts;
 }
 
+namespace {
+
+/// What a diagnosis changes of a scene.
+void bind_variants(py::class_<Scene>& type) {
+    type.def_property_readonly(
+            "_texts",
+            [](const Scene& scene) {
+                py::dict all;
+                for (const auto& [key, text] : values_of_keys(scene)) all[py::str(key)] = python_text(text);
+                return all;
+            },
+            "Every key of the first replica with its value as text, in the order of the reference.")
+        .def_property_readonly(
+            "_values",
+            [](const Scene& scene) {
+                const auto texts = values_of_keys(scene);
+                return typed_parameters({texts.begin(), texts.end()});
+            },
+            "The same as numbers, truths and texts; None for what is not given.")
+        .def(
+            "_changed",
+            [](const Scene& scene, const py::dict& values) {
+                return with_changes(scene, key_values(values));
+            },
+            py::arg("values"),
+            "All replicas with other values of keys, checked, on the packings that they have.")
+        .def(
+            "_variant",
+            [](const Scene& scene, const py::dict& values) { return variant_of(scene, key_values(values)); },
+            py::arg("values"), "The first replica with other values of keys, without checks of ranges.")
+        .def("_with_programme", &with_programme, py::arg("parameters"),
+             "With the programme of a recording's parameters; none: strokes.")
+        .def("_with_box", [](const Scene& scene, const std::string& shape, double size_x, double size_y) {
+            Scene changed = scene;
+            for (Replica& replica : changed.replicas)
+                replica.box = {size_x, size_y, *parse<ContainerShape>(shape)};
+            return changed;
+        });
+}
+
+}  // namespace
+
 void bind_scene(py::module_& module) {
-    py::class_<Scene>(
+    py::class_<Scene> type(
         module, "Scene",
         "What to simulate, checked: the replicas of one run.\n\n"
         "Scene(tables, **more) takes the keys of a scene (scenes/README.md), nested or dotted, in SI\n"
         "units: Scene(grains={'friction': 0.1}) or Scene({'grains.friction': 0.1}). ValueError lists\n"
-        "every problem.")
-        .def(py::init(&scene_of), py::arg("tables") = py::dict(), py::pos_only())
+        "every problem.");
+    bind_variants(type);
+    type.def(py::init(&scene_of), py::arg("tables") = py::dict(), py::pos_only())
         .def_static(
             "read",
             [](const std::filesystem::path& file, const py::dict& set) {
@@ -136,14 +180,12 @@ void bind_scene(py::module_& module) {
         },
         py::arg("file"), py::arg("overrides"),
         "A scene file with overrides \"key=value\", and warnings about its packing files.");
+    module.def("expect_plate", &expect_plate, py::arg("scene"), py::arg("what"),
+               "Refuses cells and species, which `what` does not support.");
+    module.def(
+        "key_unit", [](const std::string& key) { return std::string(find_key(key)->unit); }, py::arg("key"));
     module.def("expect_plain_strokes", &expect_plain_strokes, py::arg("scene"), py::arg("what"),
                "Refuses cells, species and programmes, which `what` does not support.");
-    module.def(
-        "other_materials",
-        [](const Scene& scene, const std::map<std::string, double>& stated) {
-            return other_materials(scene.replicas.front(), stated);
-        },
-        py::arg("scene"), py::arg("stated"), "Stated materials that the first replica does not have.");
     module.def(
         "manifest_of", [](const Scene& scene) { return manifest_of(scene, version_text); }, py::arg("scene"),
         "Everything but the device that determines the bits of a run: names and digests.");

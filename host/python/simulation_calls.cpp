@@ -58,11 +58,10 @@ SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::obje
             scene.name, scene.text, version_text, device.description(), std::string(name(scene.precision)),
             {}};
         const auto packings = make_packings(scene, [&] { return watch.stop_wanted(); });
-        run->recordings =
-            simulate(device, scene, packings, std::numeric_limits<std::size_t>::max(), [&](double part) {
-                watch.show_progress(part);
-                if (watch.stop_wanted()) throw Interrupted();
-            });
+        run->recordings = simulate(device, scene, packings, {.on_progress = [&](double part) {
+                                       watch.show_progress(part);
+                                       if (watch.stop_wanted()) throw Interrupted();
+                                   }});
         for (const Recording& recording : run->recordings)
             if (recording.failure) watch.warn(failure_text(recording.label, *recording.failure));
     } catch (const Interrupted&) {
@@ -112,7 +111,7 @@ SharedRun read(const std::filesystem::path& path, const std::string& what) {
 
 /// A run of one recording, with all its data.
 SharedRun read_replica(const std::filesystem::path& path, std::size_t number) {
-    return watched(py::none(), [&](const TrialOptions& options) {
+    return watched(py::none(), [&](const WatchOptions& options) {
         RunReader reader(path);
         auto run = std::make_shared<Run>(reader.run());
         if (number >= run->recordings.size())

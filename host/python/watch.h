@@ -7,11 +7,12 @@
 
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <string>
 #include <thread>
 
 #include "core/errors.h"
-#include "ensemble/diagnosis/observe_trials.h"
+#include "core/stop.h"
 
 namespace mcdem::inline python {
 
@@ -86,12 +87,18 @@ auto without_gil(Watch& watch, Work work) {
     return result;
 }
 
-/// The same with the progress of a Python callable; `work` gets TrialOptions.
+/// What a long piece of work is told and tells.
+struct WatchOptions {
+    std::function<void(double fraction)> on_progress;
+    StopWanted stop_wanted;
+};
+
+/// The same with the progress of a Python callable; `work` gets WatchOptions.
 template <class Work>
 auto watched(pybind11::object progress, Work work) {
     Watch watch(std::move(progress));
     return without_gil(watch, [&] {
-        return work(TrialOptions{[&](double part) { watch.show_progress(part); },
+        return work(WatchOptions{[&](double part) { watch.show_progress(part); },
                                  [&] { return watch.stop_wanted(); }});
     });
 }

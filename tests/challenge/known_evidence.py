@@ -4,7 +4,8 @@ import numpy as np
 from mcdem._engine import Random
 from mcdem.diagnosis.evidence import CandidateRange, Evidence, NuisancePrior
 from mcdem.diagnosis.library import Library
-from mcdem.diagnosis.observables import Grid, cells_of, observables
+from mcdem.observe.grid import Grid, cells_of
+from mcdem.observe.observables import observables
 from mcdem.diagnosis.signature import Signature
 
 PACKINGS, REPLICATES = 8, 4

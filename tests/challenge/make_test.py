@@ -12,6 +12,7 @@ from small_scene import scene_text
 from mcdem import _engine as engine
 from mcdem.challenge.files import read_open_challenge
 from mcdem.challenge.make import Options, make_challenge
+from mcdem.challenge.case_simulator import CaseSimulator
 from mcdem.challenge.plan import ChallengeSize, draw_challenge, model_of
 from mcdem.challenge.truth import open_truth, seal_of
 from mcdem.errors import InputError, RunError
@@ -34,7 +35,7 @@ class Make(unittest.TestCase):
                           "size": ChallengeSize(1, 2, 2, 0, 0, 2), "effects": ["cross_contact", "stiffening"], **more})
 
     def drawn(self):
-        model = model_of(engine.CaseSimulator(self.scene, self.options.measurement, ""))
+        model = model_of(CaseSimulator(self.scene, self.options.measurement, ""))
         return draw_challenge(self.options.size, self.options.effects, model, seal_of(self.scene.text.encode()), self.options.seed)
 
     def interrupted(self, options, when):

@@ -9,6 +9,7 @@ import numpy as np
 
 from mcdem import _engine as engine
 from mcdem.convergence.convergence_types import Limits
+from mcdem.convergence.simulator import Simulator
 from mcdem.convergence.converge import Study, converge
 from mcdem.errors import InputError
 
@@ -67,7 +68,7 @@ class SmallScenes(unittest.TestCase):
             self.stages.append(stage)
 
     def study(self, scene):
-        simulator = engine.ConvergenceSimulator(scene, self.folder, replicas=8, jitter=0, seed=1, device="")
+        simulator = Simulator(scene, self.folder, replicas=8, jitter=0, seed=1, device="")
         return Study(scene, simulator, 0, Limits(), self.told).run()
 
     def beyond(self, made):
@@ -134,7 +135,7 @@ class Changes(unittest.TestCase):
         observed = []
         for scene, changed in ((pressed({"plate.speed": 1}), changes), (pressed(changes), {})):
             with tempfile.TemporaryDirectory() as folder:
-                simulator = engine.ConvergenceSimulator(scene, folder, replicas=2, jitter=1e-4, seed=3, device="")
+                simulator = Simulator(scene, folder, replicas=2, jitter=1e-4, seed=3, device="")
                 simulator.find_grid()
                 observed.append(simulator.observe(changed))
         np.testing.assert_array_equal(*observed)
@@ -142,7 +143,7 @@ class Changes(unittest.TestCase):
 
     def test_of_packings_are_refused(self):
         with tempfile.TemporaryDirectory() as folder:
-            simulator = engine.ConvergenceSimulator(pressed({}), folder, replicas=2, jitter=1e-4, seed=3, device="")
+            simulator = Simulator(pressed({}), folder, replicas=2, jitter=1e-4, seed=3, device="")
             simulator.find_grid()
             for key, value in (("packing.count", 3), ("numerics.skin", 3)):
                 with self.assertRaisesRegex(InputError, re.escape(key)):

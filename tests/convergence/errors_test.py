@@ -6,7 +6,8 @@ from numpy.testing import assert_allclose
 
 from mcdem.convergence.convergence_types import RELATIVE, Limits
 from mcdem.convergence.errors import Baseline, RefinedRuns, cause_errors, errors_of, mean_and_error
-from mcdem.diagnosis.observables import Grid, cells_of, observables
+from mcdem.observe.grid import Grid, cells_of
+from mcdem.observe.observables import observables
 from mcdem.observe.estimate import mean_over_replicas
 
 CELLS = cells_of(Grid([0.01], 0.002, 0.02))

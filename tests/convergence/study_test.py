@@ -7,7 +7,8 @@ from refinements_test import PARAMETERS
 
 from mcdem.convergence.convergence_types import Limits
 from mcdem.convergence.converge import Study
-from mcdem.diagnosis.observables import Grid, cells_of, observables
+from mcdem.observe.grid import Grid, cells_of, grid_from
+from mcdem.observe.observables import observables
 from mcdem.errors import InputError
 
 GRID = {"displacement": [0.01, 0.02], "width": 0.002, "stroke": 0.02, "force": [], "force_width": 0.0, "holds": []}
@@ -17,7 +18,7 @@ REPLICAS = 8
 
 
 class Simulated:
-    """As engine.ConvergenceSimulator. All observables increase with the speed of the plate; `scatter` is that between copies."""
+    """As Simulator. All observables increase with the speed of the plate; `scatter` is that between copies."""
 
     def __init__(self, scatter=0.1, draws_packings=True, grid=GRID):
         self.draws_packings, self.grid, self.drawn, self.asked, self.lost = draws_packings, grid, False, [], {}
@@ -25,7 +26,7 @@ class Simulated:
         self.packing = self._random.normal(0, scatter, (REPLICAS, len(CELLS)))
 
     def find_grid(self, progress=None):
-        return self.grid
+        return grid_from(self.grid)
 
     def observe(self, changes, progress=None):
         progress(0.5)

@@ -10,7 +10,8 @@ from mcdem.diagnosis.builder import DiagnosisBuilder
 from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.diagnosis_types import Verdict
 from mcdem.diagnosis.gap_space import GapSpace
-from mcdem.diagnosis.observables import cells_each, observables
+from mcdem.observe.grid import cells_each
+from mcdem.observe.observables import observables
 
 
 def planted(seed, observables_known=6, effects=("adhesion",), size=1.0):

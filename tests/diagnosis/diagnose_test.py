@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from mcdem import _engine as engine
+from mcdem.challenge.case import ChallengeCase, Hidden
+from mcdem.challenge.case_simulator import CaseSimulator
 from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.diagnose import Listener, Options, diagnose, make_simulations
 from mcdem.diagnosis.diagnosis_types import Verdict
@@ -15,7 +17,6 @@ from mcdem.experiment.experiment import Measurement
 from mcdem.experiment.from_run import experiment_from
 from mcdem.experiment.read import read_experiment
 from mcdem.experiment.write import write_experiment
-from mcdem.results.engine_run import run_of
 
 SMALL = """name = "small"
 [box]
@@ -40,7 +41,7 @@ rate_tolerance = 0
 settle_time = 0.02
 relax_time = 0.02
 """
-MEASUREMENT = 1e-5, 1e-5, 0.01, 1e-4
+MEASUREMENT = Measurement(1e-5, 1e-5, 0.01, 1e-4)
 FEW = Options(replicates=8, pairs=2, confirmations=4)
 
 
@@ -70,14 +71,14 @@ class Diagnoses(unittest.TestCase):
         cls.folder = pathlib.Path(kept.name)
         (cls.folder / "small.toml").write_text(SMALL)
         cls.scene, _ = engine.scene_of_options(str(cls.folder / "small.toml"), [])
-        simulator = engine.CaseSimulator(cls.scene, MEASUREMENT, "")
+        simulator = CaseSimulator(cls.scene, MEASUREMENT, "")
         simulator.make_packings([2])
-        cases = {"plain": [], "adhesive": [("adhesion", 0.3)]}  # from 0.15 on two laws of adhesion take away all of the gap
-        failures = simulator.simulate([(name, effects, [], 0, 5) for name, effects in cases.items()], False)
+        hidden = {"plain": (), "adhesive": (Hidden("adhesion", 0.3),)}  # from 0.15 on two laws of adhesion take away all of the gap
+        cases = [ChallengeCase(name, "", effects, (), (), 0, 5) for name, effects in hidden.items()]
+        failures = simulator.simulate(cases, False, lambda fraction: None)
         assert failures == ["", ""], failures
-        for k, name in enumerate(cases):
-            seen = run_of(simulator.measured(k)).recordings[0]
-            write_experiment(cls.folder / name, experiment_from(seen, Measurement(*MEASUREMENT)), gzip=True)
+        for k, name in enumerate(hidden):
+            write_experiment(cls.folder / name, experiment_from(simulator.measured(k), MEASUREMENT), gzip=True)
 
     def diagnosed(self, experiment, options, store="simulations"):
         listener = Kept()

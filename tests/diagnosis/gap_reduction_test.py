@@ -11,7 +11,7 @@ from mcdem.diagnosis.evidence import gap_data
 from mcdem.diagnosis.gap_reduction import (PartialFit, Split, fit_part, gap_size, held_out_gap, held_out_placebo, held_out_reduction,
                                            measure_reduction, reduction_by_runs, refit_part, split_cells, whole_placebo)
 from mcdem.diagnosis.gap_space import FreeParameter, GapSpace
-from mcdem.diagnosis.observables import cells_of
+from mcdem.observe.grid import cells_of
 from mcdem.results.names import Phase
 
 REPLICATES = 32

@@ -7,7 +7,7 @@ from synthetic_evidence import SyntheticWorld
 
 from mcdem._engine import Random
 from mcdem.diagnosis.gap_space import FreeParameter, GapSpace, lacking_cells, resolutions, shrunk_covariance, usable_cells, without
-from mcdem.diagnosis.observables import observables
+from mcdem.observe.observables import observables
 
 ALL = 8 * len(observables())
 

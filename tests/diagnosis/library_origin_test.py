@@ -7,7 +7,8 @@ from synthetic_evidence import GRID, SyntheticWorld
 
 from mcdem.diagnosis.library import Library
 from mcdem.diagnosis.library_origin import expect_alike_loads, expect_library_of, expect_origin
-from mcdem.diagnosis.observables import Grid, cells_of, observables
+from mcdem.observe.grid import Grid, cells_of
+from mcdem.observe.observables import observables
 from mcdem.errors import InputError
 from mcdem.results.names import Phase
 

@@ -8,8 +8,8 @@ import numpy as np
 from synthetic_evidence import GRID
 
 from mcdem.diagnosis.library import write_library
-from mcdem.diagnosis.library_simulations import build_library, compare_at, fitting_library, grid_of
-from mcdem.diagnosis.observables import Grid, HoldScans, cells_of
+from mcdem.diagnosis.library_simulations import build_library, fitting_library
+from mcdem.observe.grid import Grid, HoldScans, cells_of
 from mcdem.errors import InputError
 from mcdem.results.names import Phase
 
@@ -20,7 +20,7 @@ HOLDS = [HoldScans(3, 4, 5, "force", Phase.unload, 0.01)]
 
 
 class KnownSimulations:
-    """As engine.Simulations: two packings with three replicates, two of which are repeated with every probe. A probe changes a cell by
+    """As Simulations: two packings with three replicates, two of which are repeated with every probe. A probe changes a cell by
     linear a + curvature a^2."""
 
     device, origin = "a device", {"grains.friction": "0.03"}
@@ -30,7 +30,7 @@ class KnownSimulations:
         self.runs = random.normal(size=(6, CELLS))
         self.linear, self.curvature = random.normal(size=(2, len(PROBES), CELLS))
         self.curvature[1:] = 0
-        self.grid = {"displacement": GRID.displacement, "width": GRID.width, "stroke": GRID.stroke, "force": [], "force_width": 0.0, "holds": []}
+        self.grid = GRID
         self.candidates = ["force_bias", "plate_tilt"]
 
     def facts(self):
@@ -58,12 +58,6 @@ class Build(unittest.TestCase):
             self.assertEqual((signature.reach, signature.pairs()), (PROBES[k][2], 4))
             np.testing.assert_allclose(signature.linear, simulations.linear[k], atol=1e-9)
             np.testing.assert_allclose(signature.curvature, simulations.curvature[k], atol=1e-9)
-
-    def test_the_grid_is_that_of_the_simulations(self):
-        simulations = KnownSimulations()
-        for grid in (GRID, Grid([0.01, 0.02], 0.005, 0.022, [0.1, 0.2], 0.3, HOLDS)):
-            compare_at(simulations, grid)
-            self.assertEqual(grid_of(simulations), grid)
 
 
 class Fitting(unittest.TestCase):

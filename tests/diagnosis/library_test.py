@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from synthetic_evidence import GRID, SyntheticWorld
 
 from mcdem.diagnosis.library import Library, apart_from_mean, library_text, read_library, scatter, write_library
-from mcdem.diagnosis.observables import Grid, HoldScans
+from mcdem.observe.grid import Grid, HoldScans
 from mcdem.errors import InputError, RunError
 from mcdem.results.names import Phase
 

@@ -9,7 +9,7 @@ from mcdem.diagnosis.evidence import gap_data
 from mcdem.diagnosis.gap_space import GapSpace
 from mcdem.diagnosis.gap_tests import NullDistribution
 from mcdem.diagnosis.location import locate
-from mcdem.diagnosis.observables import observables
+from mcdem.observe.observables import observables
 
 REPLICATES = 32
 PLANTED = 8 * 2 + 4 + 1  # the third observable, unloading, second displacement

@@ -7,7 +7,8 @@ from synthetic_evidence import GRID, SyntheticWorld
 from mcdem.diagnosis.builder import DiagnosisBuilder
 from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.diagnosis_types import Verdict
-from mcdem.diagnosis.observables import cells_of, not_measured
+from mcdem.diagnosis.not_measured import not_measured
+from mcdem.observe.grid import cells_of
 from mcdem.errors import InputError
 
 

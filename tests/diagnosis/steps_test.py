@@ -12,7 +12,7 @@ REPLICATES = 12
 
 
 class KnownSimulations:
-    """As engine.Simulations: runs of one packing that are given."""
+    """As Simulations: runs of one packing that are given."""
 
     causes_of_failure = {"": "diverged"}
 

@@ -6,7 +6,7 @@ import numpy as np
 from mcdem._engine import Random
 from mcdem.diagnosis.evidence import CandidateRange, Evidence, NuisancePrior
 from mcdem.diagnosis.library import Library
-from mcdem.diagnosis.observables import Grid, cells_of
+from mcdem.observe.grid import Grid, cells_of
 from mcdem.diagnosis.signature import Signature
 
 GRID = Grid([0.0126, 0.0183, 0.0240, 0.0294], 0.0036, 0.03)  # eight cells of each observable

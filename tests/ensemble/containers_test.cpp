@@ -1,7 +1,5 @@
-// Runs with containers of several shapes in one batch, and commands that do not support them.
+// Runs with containers of several shapes in one batch.
 #include "core/container.h"
-#include "core/errors.h"
-#include "ensemble/diagnosis/diagnosis_plan.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/run_scene.h"
 #include "ensemble/small_scene.h"
@@ -55,21 +53,6 @@ TEST(Containers, WithEqualSizesHaveDifferentPackings) {
     ASSERT_EQ(packings.size(), 3u);
     EXPECT_NE(packings[0].position, packings[1].position);
     EXPECT_NE(packings[0].position, packings[2].position);
-}
-
-TEST(Containers, OtherThanBoxesCannotBeDiagnosed) {
-    Scene scene = parse_scene(three_shapes, "three.toml", {});
-    Experiment experiment;
-    Recording& recording = experiment.recording;
-    recording.box = {0.08, 0.08};
-    recording.plate_start = 0.09;
-    recording.scans.resize(1);
-    recording.scans[0].plate_z = 0.085;
-    EXPECT_NO_THROW(model_of(scene, experiment));
-    for (const std::size_t other : {1u, 2u}) {
-        std::swap(scene.replicas[0], scene.replicas[other]);
-        EXPECT_THROW(model_of(scene, experiment), InputError);
-    }
 }
 
 }  // namespace

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "core/errors.h"
+#include "scene/programme/programme_text.h"
+#include "scene/read/keys.h"
 #include "scene/read/list_tables.h"
 #include "scene/read/scene_checks.h"
 #include "scene/read/toml_text.h"
@@ -45,6 +49,48 @@ Settings settings_of(const Scene& run, const Replica& replica) {
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> values_of_keys(const Scene& scene) {
+    const Replica& replica = scene.replicas.front();
+    Settings settings = settings_of(scene, replica);
+    settings.cylinder_radius = Settings().cylinder_radius;  // the sizes of the box have them
+    settings.cell_height = not_given;
+    std::vector<std::pair<std::string, std::string>> texts;
+    for (const Key& key : keys())
+        if (key.scope == Scope::replica || key.name == "numerics.precision")
+            texts.emplace_back(key.name, value_text(key, settings));
+    for (const auto& stage : programme_parameters(replica.programme)) texts.emplace_back(stage);
+    return texts;
+}
+
+Scene variant_of(const Scene& scene, const std::map<std::string, std::string>& values) {
+    Scene variant = scene;
+    variant.replicas.resize(1);
+    Replica& replica = variant.replicas.front();
+    Settings settings = settings_of(variant, replica);
+    for (const auto& [name, text] : values) {
+        const Key* known = find_key(name);
+        const auto value = parse_value(text);
+        if (!known || !value) throw InputError(name + ": is no key, or has no value of TOML: " + text);
+        Key key = *known;
+        key.range = {-HUGE_VAL, HUGE_VAL};
+        if (const auto problem = assign(key, *value->get("value"), settings))
+            throw InputError(fmt::format("{} {}", name, *problem));
+    }
+    replica = std::move(settings.replica);
+    return variant;
+}
+
+Scene with_programme(const Scene& scene, const std::map<std::string, std::string>& parameters) {
+    Scene changed = scene;
+    for (Replica& replica : changed.replicas) {
+        std::erase_if(replica.parameters,
+                      [](const auto& one) { return one.first.starts_with("programme."); });
+        replica.programme = programme_of(parameters);
+        replica.parameters.merge(programme_parameters(replica.programme));
+    }
+    return changed;
+}
 
 Scene with_changes(const Scene& scene, const std::map<std::string, std::string>& values) {
     std::vector<std::string> problems;

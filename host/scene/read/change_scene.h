@@ -2,6 +2,8 @@
 #pragma once
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -13,5 +15,18 @@ namespace mcdem::inline scene {
 /// several keys of one material or law. Throws InputError with all problems. The text of the scene does not
 /// change.
 Scene with_changes(const Scene& scene, const std::map<std::string, std::string>& values);
+
+/// Every key of the first replica with its value as text, in the order of the table, and the precision; then
+/// those of its programme.
+std::vector<std::pair<std::string, std::string>> values_of_keys(const Scene& scene);
+
+/// The first replica with these values, as TOML text, of any keys but those of packing and batch, which have
+/// no effect. Nothing is checked but that keys exist and values have their type: a simulation may leave the
+/// range of what a user may ask for. Sizes of a cylinder and of a cell do not change, nor do the parameters
+/// that recordings of the replica will have. Throws InputError.
+Scene variant_of(const Scene& scene, const std::map<std::string, std::string>& values);
+
+/// The scene with the programme in a recording's parameters; none: strokes.
+Scene with_programme(const Scene& scene, const std::map<std::string, std::string>& parameters);
 
 }  // namespace mcdem::scene

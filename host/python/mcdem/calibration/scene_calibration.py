@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InputError
-from ..experiment.experiment import MATERIALS
+from ..experiment.experiment import MATERIALS, other_materials
 from ..observe.estimate import Estimate, mean_over_replicas
 from ..observe.levels import group_levels, level_tolerance
 from ..observe.replicas import MODEL, SEED, Replicas
@@ -119,10 +119,9 @@ def _check(parameters: Sequence[Parameters]) -> None:
 
 def _note_other_materials(scene: "Scene", reference: Replicas, model: ContactModel, note: Callable[[str], object]) -> None:
     """Materials that the reference states and the scene does not have: the calibrated parameter would make up for them."""
-    from .._engine import other_materials
     searched = {MODULUS} if model != ContactModel.mc_dem else set()
     values = {key: reference[0].value(key) for key in MATERIALS if key not in searched}
-    if others := other_materials(scene, {key: value for key, value in values.items() if isinstance(value, (int, float))}):
+    if others := other_materials({key: value for key, value in values.items() if isinstance(value, (int, float))}, scene.parameters[0]):
         note(f"the reference has {', '.join(others)}: the calibrated value makes up for the difference; change the scene with --set if the "
              "reference is right")
 

@@ -11,7 +11,8 @@ from ..diagnosis.diagnosis_types import Verdict
 from ..diagnosis.effect_fit import fit_effect
 from ..diagnosis.evidence import MAX_FOLDS, Evidence, GapData, gap_data
 from ..diagnosis.gap_space import GapSpace
-from ..diagnosis.observables import cells_of, observables
+from ..observe.grid import cells_of
+from ..observe.observables import observables
 from ..errors import InputError
 from .merits import Answer
 

@@ -14,8 +14,8 @@ from ..experiment.write import write_experiment
 from ..files import create_whole, read_input
 from ..look import Path, is_there
 from ..outputs import make_folder_of, output_folder, remove_temporaries, remove_temporaries_of
-from ..results.engine_run import run_of
 from .case import Challenge, ChallengeCase, Hidden
+from .case_simulator import CaseSimulator
 from .files import OpenCase, OpenChallenge, open_challenge_text, read_open_challenge
 from .plan import CHALLENGED_EFFECTS, ChallengeSize, Model, draw_challenge, model_of
 from .truth import parse_truth, seal_of, truth_text
@@ -34,7 +34,7 @@ class Options:
     seed: int | None = None  # default: that of an existing truth file, otherwise a random one that nobody knows
     size: ChallengeSize = field(default_factory=ChallengeSize)
     effects: Sequence[str] = ()  # none: CHALLENGED_EFFECTS
-    measurement: Sequence[float] = (1e-4, 2e-5, 0.05, 0.004)  # accuracy of all measurements, as engine.CaseSimulator
+    measurement: Measurement = Measurement(1e-4, 2e-5, 0.05, 0.004)
     device: str = ""
 
 
@@ -45,7 +45,7 @@ def make_challenge(scene: engine.Scene, options: Options, progress: Progress = l
     Raises InputError if the scene is unsuitable or the folder contains another challenge, RunError if a simulation fails, and what
     `progress` raises.
     """
-    simulator = engine.CaseSimulator(scene, options.measurement, options.device)
+    simulator = CaseSimulator(scene, options.measurement, options.device)
     if os.path.realpath(options.truth) == os.path.realpath(_open_file(options)):
         raise InputError(f"{options.truth}: is what may be known of the challenge: give another file for the truth")
     with output_folder(options.folder):
@@ -87,7 +87,7 @@ def _without_answer(case: ChallengeCase) -> OpenCase:
 
 
 class _Making:
-    def __init__(self, simulator: engine.CaseSimulator, scene_sha256: str, options: Options, progress: Progress) -> None:
+    def __init__(self, simulator: CaseSimulator, scene_sha256: str, options: Options, progress: Progress) -> None:
         self._simulator, self._options, self._progress = simulator, options, progress
         self._sealed = read_input(options.truth) if is_there(options.truth) else None  # content of the truth file
         sealed = parse_truth(self._sealed, options.truth) if self._sealed is not None else None
@@ -130,9 +130,8 @@ class _Making:
     def _simulate(self, numbers: Sequence[int], loading: bool, before: int, of: int, begin: float, part: float) -> list[str]:
         """Why each case failed. The progress of `of` cases is from `begin` to `begin + part`; `before` of them are done."""
         cases = [self._challenge.cases[number] for number in numbers]
-        rows = [(case.folder, _pairs(case.effects), _pairs(case.nuisances), case.packing, case.seed) for case in cases]
         return self._simulator.simulate(
-            rows, loading, lambda fraction: self._progress(begin + part * (before + fraction * len(rows)) / of))
+            cases, loading, lambda fraction: self._progress(begin + part * (before + fraction * len(cases)) / of))
 
     def _weaken_diverging(self) -> None:
         """Dense packings with interacting contacts have no static solution above some amplitude. Such cases are loaded again with weaker
@@ -176,10 +175,6 @@ class _Making:
         """The k-th case of those that were simulated last."""
         if failure:
             raise RunError(f"{self._challenge.cases[number].folder}: its simulation failed at {failure}")
-        recording, folder = run_of(self._simulator.measured(k)).recordings[0], self._folder(number)
+        recording, folder = self._simulator.measured(k), self._folder(number)
         remove_temporaries(folder)
-        write_experiment(folder, experiment_from(recording, Measurement(*self._options.measurement)), gzip=True)
-
-
-def _pairs(hidden: Sequence[Hidden]) -> list[tuple[str, float]]:
-    return [(one.name, one.amplitude) for one in hidden]
+        write_experiment(folder, experiment_from(recording, self._options.measurement), gzip=True)

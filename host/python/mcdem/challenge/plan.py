@@ -8,6 +8,8 @@ from ..diagnosis.effects import effects as all_effects
 from ..diagnosis.effects import find_effect
 from ..errors import InputError
 from .case import CaseKind, Challenge, ChallengeCase, Hidden
+from .case_simulator import CaseSimulator
+from .outside_effects import OUTSIDE_EFFECTS
 
 # Default effects of a challenge: of contacts, grains, plate and measurement.
 CHALLENGED_EFFECTS = ("cross_contact", "friction", "adhesion", "viscoelasticity", "stiffening", "plasticity", "buoyancy",
@@ -39,9 +41,10 @@ class Model:
     sigmas: Mapping[str, float]  # priors of the nuisances
 
 
-def model_of(simulator: engine.CaseSimulator) -> Model:
-    rows = simulator.effects()
-    return Model({name: scale for name, scale, _ in rows}, {name: hindrance for name, _, hindrance in rows}, dict(simulator.nuisances()))
+def model_of(simulator: CaseSimulator) -> Model:
+    stated = simulator.stated
+    return Model({effect.name: effect.scale(stated) for effect in all_effects()}, {effect.name: effect.hindrance(stated) for effect in all_effects()},
+                 {one.name: one.sigma for one in simulator.nuisances})
 
 
 class Strength(enum.Enum):
@@ -109,7 +112,7 @@ def _draw_cases(size: ChallengeSize, effects: Sequence[str], draw: Drawing) -> l
         both = draw.random.shuffled(len(effects))[:2]
         add(CaseKind.pair, [draw.effect(effects[k], Strength.clear) for k in both])
     struck = [effects[k] for k in draw.random.shuffled(len(effects))]
-    others = engine.outside_effects()
+    others = [(one.name, one.low, one.high, one.both_signs) for one in OUTSIDE_EFFECTS]
     for k in range(size.unknown):
         strikes, is_other = divmod(k, EVERY_STRUCK)
         if is_other:

@@ -20,8 +20,8 @@ from ..diagnosis.library import Library, library_text, read_library, write_libra
 from ..diagnosis.library_origin import expect_origin
 from ..diagnosis.library_parts import expect_device, missing_parts
 from ..diagnosis.library_simulations import build_library
+from ..diagnosis.simulations import Simulations
 from ..errors import InputError
-from ..experiment.engine_experiment import engine_experiment
 from ..experiment.experiment import Experiment
 from ..experiment.read import read_experiment
 from ..files import read_input, write_whole
@@ -138,16 +138,16 @@ class ChallengeWork:
         return [number for number, case in enumerate(self._cases) if not self._is_done(case)]
 
     @cached_property
-    def _others(self) -> engine.Simulations:
+    def _others(self) -> Simulations:
         """The library's simulations: other packings of the same kind, measured as the first case."""
         options = self._options
-        return engine.Simulations.of_others(
-            self._scene, engine_experiment(self._experiment(self._cases[0])), options.library_packings, self._folder / "simulations",
+        return Simulations.of_others(
+            self._scene, self._experiment(self._cases[0]), options.library_packings, self._folder / "simulations",
             candidates=list(options.candidates), replicates=options.library_replicates, pairs=options.library_pairs, seed=options.seed,
             device=options.device)
 
     @cached_property
-    def _first(self) -> engine.Simulations:
+    def _first(self) -> Simulations:
         """Those of the first case, whose measurement determines the library."""
         return self._simulations(self._cases[0], self._how(()))
 
@@ -181,7 +181,7 @@ class ChallengeWork:
         return DiagnoseOptions(candidates=candidates, replicates=options.replicates, confirmations=options.confirmations,
                                paper_metrics=False, seed=options.seed, library=self._folder / "library.json")  # metrics are not scored
 
-    def _simulations(self, case: OpenCase, how: DiagnoseOptions) -> engine.Simulations:
+    def _simulations(self, case: OpenCase, how: DiagnoseOptions) -> Simulations:
         return make_simulations(self._scene, [self._experiment(case)], self._folder / "simulations", how, self._options.device)
 
     def _diagnose(self, case: OpenCase, library: Library, progress: Progress) -> None:

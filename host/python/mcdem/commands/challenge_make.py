@@ -22,7 +22,7 @@ SIZES = {
     "outside": (20, "Number of experiments with modulus or strain zero far outside their uncertainty"),
     "packings": (24, "Number of different packings; even"),
 }
-# Option -> default, unit, check, help; as engine.CaseSimulator takes them.
+# Option -> default, unit, check, help; the fields of Measurement.
 MEASUREMENT = {
     "position_error": (1e-4, "M", at_least_zero, "Standard error of each coordinate of a centre [m]"),
     "diameter_error": (2e-5, "M", at_least_zero, "Standard error of a diameter [m]"),
@@ -60,11 +60,12 @@ def _option(name: str) -> str:
 def run(options: argparse.Namespace) -> int:
     from ..challenge.make import Options, make_challenge
     from ..challenge.plan import ChallengeSize
+    from ..experiment.experiment import Measurement
     scene = read_scene(options)
     truth = options.truth or os.path.join(options.out, "truth.json")
     wanted = Options(folder=options.out, truth=truth, seed=options.seed, effects=options.effects, device=options.device,
                      size=ChallengeSize(*(getattr(options, name) for name in SIZES)),
-                     measurement=[getattr(options, name) for name in MEASUREMENT])
+                     measurement=Measurement(**{name: getattr(options, name) for name in MEASUREMENT}))
     with interruptible(), Progress() as progress:
         seal = make_challenge(scene, wanted, progress.show)
     print(f"{options.out}: the challenge is made\ntruth: {truth}\nits SHA-256: {seal}")

@@ -57,11 +57,11 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _converge(options: argparse.Namespace, scene: "Scene") -> "Convergence":
-    from .. import _engine
     from ..convergence.convergence_types import Limits
     from ..convergence.converge import Study
+    from ..convergence.simulator import Simulator
     with interruptible(), StageProgress() as stages:
-        simulator = _engine.ConvergenceSimulator(scene, options.out, replicas=options.replicas, jitter=options.jitter, seed=options.seed,
+        simulator = Simulator(scene, options.out, replicas=options.replicas, jitter=options.jitter, seed=options.seed,
                                                  device=options.device)
         say(f"{scene.name} on {simulator.device_name}")
         if len(scene) > 1:

@@ -12,9 +12,10 @@ from .command_line import names, number_in, output_path, whole_in
 from .scene_options import add_scene_options, read_scene
 
 if TYPE_CHECKING:
-    from .._engine import Scene, Simulations
+    from .._engine import Scene
     from ..diagnosis.diagnose import Listener, Options
     from ..diagnosis.diagnosis_types import Diagnosis
+    from ..diagnosis.simulations import Simulations
     from ..experiment.experiment import Experiment
 
 EPILOG = """\

@@ -31,7 +31,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _lines(experiment: "Experiment") -> Iterator[str]:
     from ..experiment.check import check_experiment
-    from ..experiment.needed import needed_to_diagnose
+    from ..diagnosis.needed import needed_to_diagnose
     findings = check_experiment(experiment)
     yield experiment.name
     for severity, title in TITLES.items():

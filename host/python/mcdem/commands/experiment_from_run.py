@@ -28,7 +28,7 @@ def _up_to(limit: float) -> Callable[[str], float]:
 
 # Option -> default, unit, check, help.
 STATED = MEASUREMENT | {"diameter_error": (5e-5, *MEASUREMENT["diameter_error"][1:])}
-# Option -> unit, check, help: the other fields of Instrument (host/experiment/instrument.h); with effects' formulas of the diagnosis.
+# Option -> unit, check, help: the other fields of Instrument (experiment/instrument.py); with effects' formulas of the diagnosis.
 UNSTATED = {
     "force_bias": ("FRACTION", _up_to(0.5), "relative error by which contact forces are measured too large"),
     "threshold_shift": ("N", _up_to(1), "the true force threshold is higher by this [N]"),
@@ -69,8 +69,11 @@ def _option(name: str) -> str:
 
 
 def run(options: argparse.Namespace) -> int:
+    from ..experiment.experiment import Measurement
     from ..experiment.from_run import Options, write_from_run
+    from ..experiment.instrument import Instrument
+    given = vars(options)
+    instrument = Instrument(Measurement(**{name: given[name] for name in STATED}), **{name: given[name] for name in UNSTATED})
     print(write_from_run(Options(run=options.RUN, out=options.out, replica=options.replica, name=options.name, seed=options.seed,
-                                 instrument={name: getattr(options, name) for name in (*STATED, *UNSTATED)},
-                                 uncertainty=options.uncertainty, gzip=options.gzip)))
+                                 instrument=instrument, uncertainty=options.uncertainty, gzip=options.gzip)))
     return 0

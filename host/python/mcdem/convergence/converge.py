@@ -6,16 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from .. import _engine as engine
-from ..diagnosis.observables import Cell, Grid, cells_of, grid_from, observables
+from .._engine import Scene
 from ..errors import InputError
 from ..look import Path
+from ..observe.grid import Cell, Grid, cells_of
+from ..observe.observables import observables
 from ..outputs import CONVERGENCE, expect_replaceable, output_folder, remove_temporaries
 from ..results.recording import Floats
 from .convergence_json import FILE, write_convergence
 from .convergence_types import Convergence, Limits
 from .errors import Baseline, Errors, RefinedRuns, cause_errors, errors_of
 from .refinements import Changes, Refinement, refinements_of
+from .simulator import Simulator
 from .words import words_of_cause, words_of_result
 
 FEWEST_RUNS = 4  # that give a standard error
@@ -23,7 +25,7 @@ FEWEST_RUNS = 4  # that give a standard error
 Progress = Callable[[str, float], object]  # stage, fraction
 
 
-def converge(scene: engine.Scene, folder: Path, *, replicas: int = 32, force_limit: float = 0.005, sd_limit: float = 0.5,
+def converge(scene: Scene, folder: Path, *, replicas: int = 32, force_limit: float = 0.005, sd_limit: float = 0.5,
              jitter: float = 0.0, seed: int = 1, device: str = "", progress: Progress | None = None) -> dict[str, Any]:
     """How plate speed, inertia, time step, settling, precision and list margin change the observables of a scene's first replica: the
     contents of convergence.json, which is written into `folder`.
@@ -37,7 +39,7 @@ def converge(scene: engine.Scene, folder: Path, *, replicas: int = 32, force_lim
     with output_folder(folder) as out:
         remove_temporaries(out / "simulations")
         expect_replaceable(out / FILE, CONVERGENCE)
-        simulator = engine.ConvergenceSimulator(scene, out, replicas=replicas, jitter=jitter, seed=seed, device=device)
+        simulator = Simulator(scene, out, replicas=replicas, jitter=jitter, seed=seed, device=device)
         study = Study(scene, simulator, jitter, Limits(force_limit, sd_limit), progress or (lambda stage, fraction: None))
         document: dict[str, Any] = json.loads(write_convergence(study.run(), out))
     return document
@@ -56,7 +58,7 @@ def _check(replicas: int, force_limit: float, sd_limit: float, jitter: float) ->
 class Study:
     """The steps of a study of a scene's first replica."""
 
-    def __init__(self, scene: engine.Scene, simulator: engine.ConvergenceSimulator, jitter: float, limits: Limits,
+    def __init__(self, scene: Scene, simulator: Simulator, jitter: float, limits: Limits,
                  progress: Progress) -> None:
         self._scene, self._simulator, self._jitter, self._limits, self._progress = scene, simulator, jitter, limits, progress
 
@@ -77,7 +79,7 @@ class Study:
                            time.monotonic() - begin)
 
     def _find_grid(self) -> Grid:
-        return grid_from(self._simulator.find_grid(self._stage("the programme's displacements")))
+        return self._simulator.find_grid(self._stage("the programme's displacements"))
 
     def _baseline(self, cells: list[Cell], first: int) -> tuple[Baseline, str]:
         """The scene's replicas, and a description of them."""

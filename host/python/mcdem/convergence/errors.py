@@ -6,7 +6,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..diagnosis.observables import Cell, observables
+from ..observe.grid import Cell
+from ..observe.observables import observables
 from ..results.recording import Floats
 from .convergence_types import RELATIVE, CauseErrors, CellError, Limits
 

@@ -16,7 +16,9 @@ from .gap_space import CellChoice, GapSpace, without
 from .gap_tests import NullDistribution, gap_statistics
 from .location import locate
 from .next_steps import ProtocolRuns, next_measurements, power_of_protocol
-from .observables import MIN_CELLS, cells_of, not_measured
+from .not_measured import not_measured
+from ..observe.grid import cells_of
+from ..observe.observation import MIN_CELLS
 from .packings import packing_agreements
 from .proposals import confirm, explained_by, propose, whole_runs
 from .rearrangements import PlaceLeftOut, p_of_gap, p_without_one_place, places_left_out, without_place

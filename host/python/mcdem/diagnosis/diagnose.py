@@ -5,12 +5,9 @@ from dataclasses import dataclass, replace
 
 from .. import _engine as engine
 from ..errors import InputError
-from ..experiment.engine_experiment import engine_experiment
 from ..experiment.experiment import Experiment
-from ..experiment.needed import needed_to_diagnose
 from ..look import Path
 from ..number_text import shortest
-from ..results.engine_run import run_of
 from ..results.recording import Floats
 from .change_of_the_scene import Amplitudes, change_of_the_scene, simulate_motion
 from .decision import Findings, Limits
@@ -21,10 +18,12 @@ from .gap_reduction import PartialFit
 from .inference import Inference
 from .library import Library, write_library
 from .library_origin import expect_alike_loads
-from .library_simulations import build_library, compare_at, fitting_library
+from .library_simulations import build_library, fitting_library
+from .needed import needed_to_diagnose
 from .next_steps import ProtocolRuns, check_of, proposal_of_rival
 from .paper_metrics import paper_metrics
 from .signature import continued_from
+from .simulations import Simulations
 
 MAX_REFINEMENT = 64  # largest factor by which a refinement of a numerical setting is recommended
 # Largest factor by which an experiment's plate may be slower than the scene's if its motion is to be simulated. With rate_tolerance the
@@ -64,19 +63,18 @@ class Listener:
 
 
 def make_simulations(scene: engine.Scene, experiments: Sequence[Experiment], store: Path, options: Options, device: str = "",
-                     listener: Listener | None = None) -> engine.Simulations:
+                     listener: Listener | None = None) -> Simulations:
     """The simulations of a diagnosis of one experiment, or of several packings of one; `store`: folder that keeps them.
 
     Raises InputError if the experiments have too few data or are not alike.
     """
     if problems := [needed for experiment in experiments for needed in needed_to_diagnose(experiment)]:
         raise InputError(problems)
-    return engine.Simulations(scene, [engine_experiment(experiment) for experiment in experiments], store,
-                              candidates=list(options.candidates), replicates=options.replicates, pairs=options.pairs,
-                              seed=options.seed, recordings=options.paper_metrics, device=device, note=(listener or Listener()).note)
+    return Simulations.of(scene, experiments, store, candidates=list(options.candidates), replicates=options.replicates, pairs=options.pairs,
+                          seed=options.seed, recordings=options.paper_metrics, device=device, note=(listener or Listener()).note)
 
 
-def diagnose(scene: engine.Scene, simulations: engine.Simulations, options: Options, listener: Listener | None = None) -> Diagnosis:
+def diagnose(scene: engine.Scene, simulations: Simulations, options: Options, listener: Listener | None = None) -> Diagnosis:
     """The diagnosis of the experiments of these simulations. Raises InputError, RunError, KeyboardInterrupt."""
     begin = time.monotonic()
     diagnosis = _Diagnosing(simulations, options, listener or Listener()).run()
@@ -88,7 +86,7 @@ def diagnose(scene: engine.Scene, simulations: engine.Simulations, options: Opti
 class _Diagnosing:
     """The steps of one diagnosis, in order."""
 
-    def __init__(self, simulations: engine.Simulations, options: Options, listener: Listener) -> None:
+    def __init__(self, simulations: Simulations, options: Options, listener: Listener) -> None:
         self.simulations, self.options, self.listener = simulations, options, listener
         self.facts = simulations.facts()
         self.packings: int = self.facts["packings"]
@@ -171,7 +169,7 @@ class _Diagnosing:
             library = self._new_library()
             baseline = library.baseline
         else:
-            compare_at(self.simulations, library.grid)
+            self.simulations.grid = library.grid
             baseline = self._simulated_baseline("baseline")
         evidence = Evidence(observed=baseline[0], baseline=baseline, library=library,
                             candidates=[CandidateRange(*row) for row in self.facts["candidates"]],
@@ -285,6 +283,6 @@ class _Diagnosing:
         few = min(self.options.replicates, confirmations)
         self.simulations.record([], few, self._stage("recordings"))
         self.simulations.record(fit, confirmations, self._stage("recordings"))
-        experiment, before, after = (run_of(run).recordings for run in self.simulations.recordings(fit, few, confirmations))
-        metrics = paper_metrics(experiment, before, after)
+        experiment, before, after = self.simulations.recordings(fit, few, confirmations)
+        metrics = paper_metrics((experiment,), tuple(before), tuple(after))
         return replace(shrink, metrics=metrics.values, top_force=metrics.top_force)

@@ -18,7 +18,7 @@ from .diagnosis_types import GapReduction
 from .effect_fit import MAX_ROUNDS, UNMOVED, Candidate, lacking_cells
 from .evidence import GapData
 from .gap_space import CellChoice, FreeParameter, GapSpace, resolutions, without
-from .observables import Grid, cells_of
+from ..observe.grid import Grid, cells_of
 from .proposals import whole_runs
 
 FITTED_PART = 0.85  # of the stroke, loading only

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from ..results.recording import Floats, Ints
-from .observables import cells_each, observables
+from ..observe.grid import cells_each
+from ..observe.observables import observables
 from .signature import Signature
 
 CellChoice = Ints  # subset of the cells in ascending order, for ablations and the split into fitted and held-out cells

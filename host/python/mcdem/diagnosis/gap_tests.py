@@ -14,7 +14,7 @@ from .effect_fit import Candidate, EffectFit, fit_effect
 from .evidence import OWN_PACKING, GapData
 from .gap_space import GapSpace
 from .library import apart_from_mean
-from .observables import cells_each
+from ..observe.grid import cells_each
 
 DRAWS_A_REPLICATE = 3
 FEWEST_CELLS = 3  # of an observable whose mean and trend are tested

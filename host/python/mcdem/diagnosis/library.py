@@ -15,7 +15,7 @@ from ..look import Path, is_file, is_there
 from ..results.names import Phase, parse
 from ..results.recording import Floats
 from .json_numbers import JsonError, array_of, expect_json, matrix_of, number_list, number_of, texts_of, whole_of
-from .observables import Grid, HoldScans, cells_of
+from ..observe.grid import Grid, HoldScans, cells_of
 from .signature import Signature
 
 FORMAT = 4

@@ -9,7 +9,8 @@ from ..look import Path
 from ..results.names import Phase
 from ..results.recording import Floats
 from .library import Library
-from .observables import Grid, cells_of, observables
+from ..observe.grid import Grid, cells_of
+from ..observe.observables import observables
 
 # Allowed difference between library and diagnosis, relative to the library, by how a name begins.
 MAY_DIFFER = {

@@ -2,10 +2,10 @@
 import pathlib
 from collections.abc import Callable
 
-from .. import _engine as engine
 from ..look import Path, is_there
 from ..manifest import device_file, keep_manifest, read_manifest
 from ..outputs import remove_temporaries
+from .simulations import Simulations
 
 DEVICE = "device"  # entry of its manifest
 
@@ -13,7 +13,7 @@ DEVICE = "device"  # entry of its manifest
 class LibraryParts:
     """Nothing is missing if the library's file exists. When all parts exist, a diagnosis builds the library without simulating."""
 
-    def __init__(self, simulations: engine.Simulations, folder: pathlib.Path, library: Path | None) -> None:
+    def __init__(self, simulations: Simulations, folder: pathlib.Path, library: Path | None) -> None:
         """`folder`: that of the diagnosis, on which a shared lock is held."""
         self._simulations, self._folder = simulations, folder
         self._is_needed = library is None or not is_there(library)
@@ -34,11 +34,11 @@ class LibraryParts:
         return True
 
 
-def missing_parts(simulations: engine.Simulations, folder: Path) -> list[int]:
+def missing_parts(simulations: Simulations, folder: Path) -> list[int]:
     """Those of the device that computes in the folder; all of them if none has begun."""
     return simulations.missing_parts((read_manifest(device_file(folder)) or {}).get(DEVICE, ""))
 
 
-def expect_device(simulations: engine.Simulations, folder: Path) -> None:
+def expect_device(simulations: Simulations, folder: Path) -> None:
     """Raises InputError if the work in the folder was begun with another device."""
     keep_manifest(device_file(folder), {DEVICE: simulations.device})

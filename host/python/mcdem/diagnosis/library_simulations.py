@@ -6,23 +6,13 @@ from ..look import Path, is_there
 from ..outputs import remove_temporaries_of
 from .library import Library, read_library
 from .library_origin import expect_library_of, expect_origin
-from .observables import Grid, grid_from
 from .signature import learn_signature
+from .simulations import Simulations
 
 Progress = Callable[[float], object]
 
 
-def grid_of(simulations: engine.Simulations) -> Grid:
-    """The displacements at which they are compared with the experiment."""
-    return grid_from(simulations.grid)
-
-
-def compare_at(simulations: engine.Simulations, grid: Grid) -> None:
-    holds = [{**vars(hold), "phase": int(hold.phase)} for hold in grid.holds]
-    simulations.grid = {**vars(grid), "displacement": [*map(float, grid.displacement)], "force": [*map(float, grid.force)], "holds": holds}
-
-
-def build_library(simulations: engine.Simulations, progress: Progress | None = None) -> Library:
+def build_library(simulations: Simulations, progress: Progress | None = None) -> Library:
     """Simulates the unchanged scene, and from the same packings every effect and nuisance at two amplitudes. Raises InputError."""
     facts = simulations.facts()
     rows = simulations.library(progress)
@@ -31,12 +21,12 @@ def build_library(simulations: engine.Simulations, progress: Progress | None = N
     differences = rows[count:].reshape(-1, 2, len(paired), rows.shape[1]) - baseline[paired]
     signatures = [learn_signature(*probe, *pair) for probe, pair in zip(facts["probes"], differences, strict=True)]
     effects = len(facts["candidates"])  # they are first; a nuisance may have the name of an effect
-    return Library(grid=grid_of(simulations), baseline=baseline, packing=[row // facts["replicates"] for row in range(count)],
+    return Library(grid=simulations.grid, baseline=baseline, packing=[row // facts["replicates"] for row in range(count)],
                    effects=signatures[:effects], nuisances=signatures[effects:],
                    provenance={"program": engine.__version__, "device": simulations.device}, origin=simulations.origin)
 
 
-def fitting_library(simulations: engine.Simulations, file: Path | None) -> Library | None:
+def fitting_library(simulations: Simulations, file: Path | None) -> Library | None:
     """The library in `file` if there is one. Raises InputError if it does not fit the simulations."""
     if file is None:
         return None
@@ -46,5 +36,5 @@ def fitting_library(simulations: engine.Simulations, file: Path | None) -> Libra
     library, facts = read_library(file), simulations.facts()
     expect_origin(library, simulations.origin, file)
     candidates, nuisances = ([name for name, *_ in facts[kind]] for kind in ("candidates", "nuisances"))
-    expect_library_of(library, grid_of(simulations), candidates, nuisances, file)
+    expect_library_of(library, simulations.grid, candidates, nuisances, file)
     return library

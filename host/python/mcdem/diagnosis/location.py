@@ -9,7 +9,8 @@ from .diagnosis_types import WhereCell, WhereEntry, millimetres
 from .evidence import GapData
 from .gap_space import GapSpace
 from .gap_tests import NullDistribution
-from .observables import Grid, cells_of, observables
+from ..observe.grid import Grid, cells_of
+from ..observe.observables import observables
 
 
 @dataclass(frozen=True)

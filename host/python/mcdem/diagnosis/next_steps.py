@@ -13,7 +13,7 @@ from .effects import depends_on_speed
 from .evidence import Evidence, GapData, parameters_of
 from .gap_space import CellChoice, FreeParameter, GapSpace, usable_cells
 from .library import apart_from_mean
-from .observables import not_measured
+from .not_measured import not_measured
 
 TIMES_BETTER = 5  # factor by which a parameter is measured better
 MORE_PACKINGS = 3

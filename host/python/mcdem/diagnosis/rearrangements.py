@@ -8,7 +8,9 @@ import numpy as np
 from .evidence import GapData
 from .gap_space import CellChoice, GapSpace
 from .gap_tests import GapStatistics, NullDistribution, gap_statistics
-from .observables import MIN_CELLS, cells_each, observables
+from ..observe.grid import cells_each
+from ..observe.observables import observables
+from ..observe.observation import MIN_CELLS
 
 OF_HOLDS = "relaxation", "creep"  # observables with one place only
 

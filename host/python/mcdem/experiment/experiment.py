@@ -1,11 +1,23 @@
 """A measured compression, in the form of a simulated recording (host/experiment/README.md describes its folder)."""
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
+from ..number_text import shortest
 from ..results.recording import Recording
 
 # The scene keys that `materials` and `uncertainty` may contain.
 MATERIALS = ("grains.youngs_modulus", "grains.poisson_ratio", "grains.excess_density", "grains.friction", "grains.restitution",
              "walls.youngs_modulus", "walls.friction")
+
+
+def other_materials(stated: Mapping[str, float], parameters: Mapping[str, Any]) -> list[str]:
+    """Simulations have the materials of the scene: "grains.youngs_modulus = 30000 (scene: 23300)" for each that is `stated` and that the scene
+    with these parameters does not have. With several species, which have their own, none."""
+    if "species.1.name" in parameters:
+        return []
+    return [f"{key} = {shortest(value)} (scene: {shortest(used)})" for key, value in stated.items()
+            if isinstance(used := parameters.get(key), (int, float)) and abs(used - value) > 1e-6 * abs(value)]
 
 
 @dataclass(frozen=True)

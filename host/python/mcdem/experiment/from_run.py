@@ -1,7 +1,7 @@
 """A simulation as an experiment: what an instrument reads of one replica of a run (host/experiment/README.md)."""
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from ..results.engine_run import run_of
 from ..results.parameters import value_of
 from ..results.recording import NO_CONTACTS, NO_VECTORS, Recording, Run
 from .experiment import MATERIALS, Experiment, Measurement
+from .instrument import Instrument, measured
 from .publish import expect_free, publish, read_back, work_folder
 from .write import SUMS_FILE, experiment_files, sums_text, write_files
 
@@ -25,14 +26,14 @@ class Options:
     out: str
     replica: str  # label or number; empty: the only one
     name: str  # of the experiment; empty: that of the run and the replica
-    instrument: Mapping[str, float]  # fields of Measurement, and of Instrument (host/experiment/instrument.h) by name
+    instrument: Instrument
     uncertainty: Sequence[str]  # "grains.youngs_modulus=500" [unit of the key]
     seed: int  # of the noise
     gzip: bool
 
     @property
     def measurement(self) -> Measurement:
-        return Measurement(*(self.instrument[field.name] for field in fields(Measurement)))
+        return self.instrument.stated
 
 
 def write_from_run(options: Options) -> str:
@@ -47,9 +48,9 @@ def write_from_run(options: Options) -> str:
     except UnicodeDecodeError as error:
         raise InputError(f"{options.run}: holds a text that is not UTF-8 ({error.reason})") from error
     expect_measurable(truth, options)
-    seen = run_of(_engine.measured(run, options.instrument, options.seed)).recordings[0]
-    measured = experiment_from(replace(seen, label=truth.label), options.measurement)
-    experiment = replace(measured, uncertainty=uncertainty, name=options.name or measured.name)
+    seen = measured(truth, options.instrument, options.seed)
+    stated = experiment_from(seen, options.measurement)
+    experiment = replace(stated, uncertainty=uncertainty, name=options.name or stated.name)
     _write(experiment, options)
     contacts, listed = (sum(map(len, one.scans.contacts)) for one in (truth, experiment.recording))
     return (f"{options.out}: {len(truth.scans)} frames, {len(experiment.recording.diameter)} grains, {listed} of {contacts} contacts "

@@ -4,6 +4,7 @@ The averages of all scans of a recording are arrays whose first axis counts the 
 """
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import compress
 from typing import Any
 
 import numpy as np
@@ -78,6 +79,12 @@ class Scans:
 
     def __len__(self) -> int:
         return len(self.frame)
+
+    def chosen(self, which: Bools) -> "Scans":
+        """The scans that `which` (S,) chooses."""
+        chosen: dict[str, Any] = {name: value[which] if isinstance(value, np.ndarray) else tuple(compress(value, which))
+                                  for name, value in vars(self).items()}
+        return Scans(**chosen)
 
     @property
     def top_force(self) -> Floats:

@@ -1,0 +1,19 @@
+"""What an experiment has not measured, and what that would tell."""
+import numpy as np
+
+from ..observe.grid import Grid, cells_of
+from ..observe.observables import observables
+from ..results.recording import Floats
+
+NOT_MEASURED = {
+    "contacts": "contacts.csv: the forces of contacts would tell the force distribution, the floor's and the walls' share, the plate's couple "
+    "and biases of the force measurement",
+    "positions": "grains.csv beyond frame 0, with contacts.csv: positions would tell the overlaps that the forces should imply, hence "
+    "cross-contact effects, stiffening, adhesion, friction and errors of sizes",
+}
+
+
+def not_measured(observed: Floats, grid: Grid) -> list[str]:
+    """One sentence for each file whose observables are missing in all scans; `observed`: one number per cell, NaN where unknown."""
+    seen = {observables()[cell.observable].needs for cell, value in zip(cells_of(grid), observed) if np.isfinite(value)}
+    return [text for needs, text in NOT_MEASURED.items() if needs not in seen]

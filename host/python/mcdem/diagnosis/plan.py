@@ -1,0 +1,229 @@
+"""What a diagnosis simulates and compares: the packings of an experiment, or other packings of the same kind."""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .. import _engine as engine
+from ..errors import InputError
+from ..experiment.experiment import Experiment
+from ..experiment.instrument import Instrument
+from ..observe.grid import Grid, grid_of
+from ..results.names import Phase
+from ..results.recording import Recording
+from .effects import EFFECTS, Apply, Effect, Nuisance, find_effect, nuisances
+from .model import Model
+from .trials import Comparison, Trial
+
+ALIKE_STROKES = 0.1  # relative, of the packings of one experiment
+BEGUN = 0.02  # over the stroke: a scan before it is not one of its levels, even if the plate's zero is slightly wrong
+APART = 0x6C696272617279  # seeds of other packings are not those of any experiment, but for an improbable coincidence
+SEEDS_OF_A_PACKING = 1000  # apart from those of the next one
+
+Note = Callable[[str], object]
+
+
+@dataclass(frozen=True)
+class Probe:
+    """An effect or nuisance that is simulated at two amplitudes."""
+
+    name: str
+    amplitudes: tuple[float, float]
+    apply: Apply
+
+
+@dataclass(eq=False)
+class Plan:
+    experiments: list[Experiment]  # with the cycles that are compared
+    packings: list[tuple[Model, engine.Packing]]
+    comparison: Comparison
+    candidates: list[Effect]
+    hindered: list[str]  # "friction_history: the scene has no friction"
+    nuisances: list[Nuisance]
+    replicates: int  # of the baseline, on every packing
+    pairs: int  # .. that are repeated with every effect and nuisance
+    seed: int
+    recordings: bool = False  # whether a library keeps those of its first trials, for the metrics of the paper
+
+    @property
+    def model(self) -> Model:
+        return self.packings[0][0]
+
+    def probes(self) -> list[Probe]:
+        """The candidates, then the nuisances on both sides of the model, so that their slope there is accurate. Amplitudes use the scale of
+        the first packing."""
+        found = []
+        for effect in self.candidates:
+            scale = effect.scale(self.model)
+            found.append(Probe(effect.name, (effect.first * scale, effect.second * scale), effect.apply))
+        return found + [Probe(one.name, (-one.sigma, one.sigma), one.apply) for one in self.nuisances]
+
+    def paired_rows(self) -> list[int]:
+        """Rows of the baseline that are repeated with every probe."""
+        return [row for row in range(len(self.packings) * self.replicates) if row % self.replicates < self.pairs]
+
+    def baseline(self, change: Apply | None = None, replicates: int | None = None, finer: float = 1.0) -> list[Trial]:
+        """The trials of a baseline, one packing after the other. Replicate r of packing p has the same seed in every library and diagnosis.
+
+        `change`: of the model, with amplitude 1. `finer`: factor of the errors of positions.
+        """
+        trials, measurement = [], self.experiments[0].measurement
+        for p, (model, packing) in enumerate(self.packings):
+            changed = change(model, 1.0) if change else model
+            if finer != 1:
+                stated = changed.instrument.stated
+                changed = changed.read_with(stated=replace(stated, position_error=finer * stated.position_error))
+            trials += [Trial(changed, packing, finer * measurement.position_error, measurement.diameter_error,
+                             self.seed + SEEDS_OF_A_PACKING * p + r) for r in range(replicates or self.replicates)]
+        return trials
+
+    def library(self) -> list[Trial]:
+        """The baseline; then for each probe and each of its two amplitudes its paired rows again."""
+        trials = self.baseline()
+        for probe in self.probes():
+            for amplitude in probe.amplitudes:
+                changed = {id(model): probe.apply(model, amplitude) for model, _ in self.packings}
+                trials += [replace(trials[row], model=changed[id(trials[row].model)]) for row in self.paired_rows()]
+        return trials
+
+    def probe_of(self, trial: int) -> str:
+        """The effect or nuisance of a trial of the library; empty for the baseline."""
+        baseline = len(self.packings) * self.replicates
+        return self.probes()[(trial - baseline) // (2 * len(self.paired_rows()))].name if trial >= baseline else ""
+
+
+def plan_of(scene: engine.Scene, measured: Sequence[Experiment], candidates: Sequence[str], replicates: int, pairs: int, seed: int,
+            recordings: bool, note: Note) -> Plan:
+    """Simulations of the experiments' own packings. Raises InputError if an experiment has too few data, or the packings of one experiment are
+    not measured in the same way."""
+    engine.expect_plate(scene, "a diagnosis")
+    if len(scene) > 1:
+        note(f"the scene has {len(scene)} replicas; the first one is diagnosed: {scene.labels[0]}")
+    experiments = [_compared_cycles(scene, one) for one in measured]
+    for one in experiments:
+        if not len(one.recording.scans):
+            raise InputError(f"{one.name}: cycles in plate.csv must count from 0, got none below protocol.cycles")
+    _note_cycles(measured[0], experiments[0], note)
+    grid = min((grid_of(one.recording) for one in experiments), key=lambda one: one.stroke)
+    _expect_alike(experiments, grid)
+    packings = [(_model_of(scene, one), _start_of(one)) for one in experiments]
+    return _filled(experiments, packings, grid, candidates, replicates, pairs, seed, recordings)
+
+
+def plan_of_others(scene: engine.Scene, measured: Experiment, packings: int, candidates: Sequence[str], replicates: int, pairs: int,
+                   seed: int) -> Plan:
+    """Simulations of `packings` others of the same kind, for a library that several experiments share."""
+    engine.expect_plain_strokes(scene, "a challenge")
+    experiment = _compared_cycles(scene, measured)
+    plate = {key: scene._values[key] for key in ("plate.start", "plate.end")}
+    model = _model_of(scene, experiment).with_keys(plate)
+    seeds = [engine.derived_seed(seed + APART, p) for p in range(packings)]
+    made = [(model, packing) for packing in engine.make_packings(model.scene, seeds)]
+    # The grid has the plate positions of the scene, from which the experiment's zero of strain differs.
+    grid = grid_of(experiment.recording)
+    factor = (plate["plate.start"] - plate["plate.end"]) / grid.stroke
+    grid = replace(grid, displacement=[factor * one for one in grid.displacement], width=factor * grid.width, stroke=factor * grid.stroke)
+    return _filled([experiment], made, grid, candidates, replicates, pairs, seed, False)
+
+
+def _filled(experiments: list[Experiment], packings: list[tuple[Model, engine.Packing]], grid: Grid, candidates: Sequence[str], replicates: int,
+            pairs: int, seed: int, recordings: bool) -> Plan:
+    model = packings[0][0]
+    chosen, hindered = _choice(model, candidates)
+    comparison = Comparison(grid, model.material(), model["protocol.discard"])
+    return Plan(experiments, packings, comparison, chosen, hindered, nuisances(model, experiments[0].uncertainty), replicates,
+                min(pairs, replicates), seed, recordings)
+
+
+def _choice(model: Model, wanted: Sequence[str]) -> tuple[list[Effect], list[str]]:
+    """The effects in `wanted` (none: all) that this model can have; the others with reasons. Raises InputError."""
+    if unknown := [name for name in wanted if not find_effect(name)]:
+        known = ", ".join(effect.name for effect in EFFECTS)
+        raise InputError([f"--candidates: {name} is not an effect; there are {known}" for name in unknown])
+    found = [find_effect(name) for name in wanted] or list(EFFECTS)
+    effects = [effect for effect in found if effect]
+    hindrances = [effect.hindrance(model) for effect in effects]
+    hindered = [f"{effect.name}: {why}" for effect, why in zip(effects, hindrances) if why]
+    chosen = [effect for effect, why in zip(effects, hindrances) if not why]
+    if not chosen:
+        raise InputError(f"--candidates: must name an effect that can be tested, got {'; '.join(hindered)}")
+    return chosen, hindered
+
+
+# What a diagnosis takes from an experiment
+
+def _simulated_cycles(scene: engine.Scene) -> int:
+    values = scene._values
+    return int(max(values["protocol.cycles"], values["protocol.discard"] + 1))
+
+
+def _compared_cycles(scene: engine.Scene, experiment: Experiment) -> Experiment:
+    """Without cycles that the scene does not have (at least one that is not discarded): grains move within a cycle, so that later ones differ.
+    A programme is compared as a whole."""
+    recording = experiment.recording
+    if recording.has_programme:
+        return experiment
+    kept = recording.scans.chosen(recording.scans.cycle < _simulated_cycles(scene))
+    return replace(experiment, recording=replace(recording, scans=kept))
+
+
+def _note_cycles(measured: Experiment, compared: Experiment, note: Note) -> None:
+    cycles, some = (int(one.recording.scans.cycle[-1]) + 1 for one in (measured, compared))
+    if cycles != some:
+        note(f"{measured.name}: only the first {'cycle is' if some == 1 else f'{some} cycles are'} compared, of {cycles}; protocol.cycles in "
+             "the scene is the number of cycles to simulate")
+
+
+def _programme(recording: Recording) -> Mapping[str, str]:
+    return {key: text for key, text in recording.parameters.items() if key.startswith("programme.")}
+
+
+def _expect_alike(experiments: Sequence[Experiment], grid: Grid) -> None:
+    """Raises InputError unless the packings of one experiment are compressed and measured in the same way."""
+    first, problems = experiments[0], []
+    for other in experiments:
+        if (other.measurement, other.uncertainty) != (first.measurement, first.uncertainty):
+            problems.append(f"{other.name}: experiment.toml must state the same [measurement] and [uncertainty] as that of {first.name}, to be "
+                            "diagnosed with it")
+        if _programme(other.recording) != _programme(first.recording):
+            problems.append(f"{other.name}: experiment.toml must state the same [[programme]] as that of {first.name}, to be diagnosed with it")
+        if (stroke := grid_of(other.recording).stroke) > (1 + ALIKE_STROKES) * grid.stroke:
+            problems.append(f"{other.name}: its stroke of {1e3 * stroke:.4g} mm must be within a tenth of the shortest, "
+                            f"{1e3 * grid.stroke:.4g} mm, to be diagnosed with it")
+    if problems:
+        raise InputError(problems)
+
+
+def _start_of(experiment: Experiment) -> engine.Packing:
+    """The grains at the experiment's first frame."""
+    scans = experiment.recording.scans
+    if not len(scans) or not len(scans.position[0]):
+        raise InputError(f"{experiment.name}: grains.csv must have the positions of frame 0, from which simulations start")
+    return engine.Packing(scans.position[0], experiment.recording.diameter)
+
+
+def _model_of(scene: engine.Scene, experiment: Experiment) -> Model:
+    """The scene's first replica with the experiment's box, plate and scans. Raises InputError if the experiment does not contain enough data
+    to simulate it."""
+    recording, scans, values = experiment.recording, experiment.recording.scans, scene._values
+    if values["container.shape"] != recording.box.shape:
+        raise InputError(f"{scene.name}: container.shape must be {recording.box.shape}, as in {experiment.name}: others cannot be diagnosed")
+    if "programme.1.stage" in values and not recording.has_programme:
+        raise InputError(f"{experiment.name}: experiment.toml must state the [[programme]] of the experiment, and plate.csv its time_s, for a "
+                         "scene that has one")
+    lowest = float(min(recording.plate_start, scans.plate_z.min()))
+    begun = BEGUN * (recording.plate_start - lowest)
+    loading = int(np.count_nonzero((scans.cycle == 0) & (scans.phase == Phase.load) & (recording.displacement > begun)))
+    if not loading or not lowest < recording.plate_start:
+        raise InputError(f"{experiment.name}: plate.csv must have loading frames below plate.start")
+    changes = {"plate.start": recording.plate_start, "protocol.scan_at_start": True}
+    if recording.has_programme:  # under a prescribed force the plate may move as far as the scene allows
+        changes["plate.end"] = min(values["plate.end"], lowest)
+    else:
+        cycles = int(scans.cycle.max()) + 1
+        changes |= {"plate.end": lowest, "protocol.scans_per_stroke": loading, "protocol.cycles": min(cycles, _simulated_cycles(scene))}
+    box = recording.box
+    base = scene._variant(changes)._with_programme(_programme(recording))._with_box(box.shape, box.size_x, box.size_y)
+    return Model(base, {}, Instrument(experiment.measurement), float(recording.diameter.mean()), experiment.plate_speed)

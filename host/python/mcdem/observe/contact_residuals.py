@@ -1,0 +1,152 @@
+"""Each measured contact: the overlap implied by its force, the overlap of the measured positions, and the surface displacement by the other
+contacts of its two grains."""
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..results.names import Wall
+from ..results.recording import Box, Floats, Ints
+
+if TYPE_CHECKING:
+    from .seen_scans import SeenScans
+
+CLOSEST = 0.0225  # of sin^2(theta / 2): contacts closer than 17 degrees are measurement errors
+
+
+@dataclass(frozen=True)
+class Material:
+    """What the residuals assume; the same for all recordings that are compared."""
+
+    youngs_modulus: float = 0.0  # grains [Pa]
+    poisson_ratio: float = 0.5
+    wall_youngs_modulus: float = 0.0  # [Pa]
+    wall_poisson_ratio: float = 0.5
+    friction: float = 0.0  # between grains
+    force_threshold: float = 0.0  # as stated by the instrument [N]
+
+
+@dataclass(frozen=True, eq=False)
+class ContactResiduals:
+    """Of C contacts. Lengths are over R* = R_i R_j / (R_i + R_j), or over R at a wall."""
+
+    normal: Floats  # (C, 3) from grain to partner
+    normal_force: Floats  # (C,) positive for repulsion [N]
+    tangential: Floats  # (C,) magnitude of the tangential force [N]
+    reduced_radius: Floats  # (C,) R* [m]
+    implied: Floats  # (C,) overlap at which Hertz's law gives the force; negative for attraction
+    measured: Floats  # (C,) overlap of the measured spheres; negative for a gap
+    cross_contact: Floats  # (C,) sum of delta_kc of both grains [paper, Eq. 1 with gamma = 1]
+
+    @property
+    def residual(self) -> Floats:
+        """(C,)"""
+        return self.implied - self.measured
+
+
+def apart(box: Box, vectors: Floats) -> Floats:
+    """Vectors between points (.., 3); in a periodic container those to the nearest image [m]."""
+    if not box.is_periodic:
+        return vectors
+    size = np.array([box.size_x, box.size_y])
+    vectors = vectors.copy()
+    vectors[..., :2] -= np.rint(vectors[..., :2] / size) * size
+    return vectors
+
+
+def towards_wall(box: Box, wall: Ints, point: Floats) -> Floats:
+    """(C, 3) unit normals from the points (C, 3) towards their walls (C,)."""
+    normal = np.zeros(point.shape)
+    normal[np.arange(len(wall)), wall // 2] = np.where(wall % 2, 1.0, -1.0)
+    if box.is_cylinder:
+        curved = wall == Wall.x_min
+        out = point[curved, :2] - (box.size_x / 2, box.size_y / 2)
+        length = np.sqrt(np.einsum("ij,ij->i", out, out))
+        out = np.where(length[:, np.newaxis] > 0, out / np.where(length > 0, length, 1)[:, np.newaxis], (1.0, 0.0))
+        normal[curved] = np.column_stack([out, np.zeros(len(out))])
+    return normal
+
+
+def wall_distance(box: Box, wall: Ints, plate_z: Floats, point: Floats) -> Floats:
+    """(C,) distances of points from their walls, negative outside; the plate is level at plate_z (C,) [m]."""
+    place = np.array([0, box.size_x, 0, box.size_y, 0, 0])[wall]
+    place = np.where(wall == Wall.plate, plate_z, place)
+    coordinate = point[np.arange(len(wall)), wall // 2]
+    distance = np.where(wall % 2, place - coordinate, coordinate - place)
+    if box.is_cylinder:
+        curved = wall == Wall.x_min
+        out = point[curved, :2] - (box.size_x / 2, box.size_y / 2)
+        distance[curved] = box.size_x / 2 - np.sqrt(np.einsum("ij,ij->i", out, out))
+    return distance
+
+
+def contact_residuals(seen: "SeenScans") -> ContactResiduals:
+    """Of all contacts of scans with positions."""
+    box, radius = seen.box, 0.5 * seen.diameter
+    grains, walls = ~seen.is_wall, seen.is_wall
+    here = radius[seen.grain]
+    normal, gap, reduced_radius = np.empty(seen.force.shape), np.empty(len(here)), np.empty(len(here))
+
+    between = apart(box, seen.position[seen.scan[grains], seen.partner[grains]] - seen.centre[grains])
+    distance = np.sqrt(np.einsum("ij,ij->i", between, between))
+    there = radius[seen.partner[grains]]
+    is_apart = distance > 0
+    normal[grains] = np.where(is_apart[:, np.newaxis], between / np.where(is_apart, distance, 1)[:, np.newaxis], (0.0, 0.0, 1.0))
+    gap[grains] = distance - here[grains] - there
+    reduced_radius[grains] = here[grains] * there / (here[grains] + there)
+
+    wall, at_wall = -1 - seen.partner[walls], here[walls]
+    normal[walls] = towards_wall(box, wall, seen.centre[walls])
+    gap[walls] = wall_distance(box, wall, seen.plate_z[seen.scan[walls]], seen.centre[walls]) - at_wall
+    # Inside a cylinder 1/R* is the geometric mean of both directions (Johnson 1985, section 4.2).
+    curved = (wall == Wall.x_min) & box.is_cylinder
+    reduced_radius[walls] = at_wall / np.sqrt(1 - np.where(curved, at_wall / (box.size_x / 2), 0))
+
+    normal_force = -np.einsum("ij,ij->i", seen.force, normal)
+    tangential = seen.force + normal_force[:, np.newaxis] * normal
+    modulus = np.where(walls, _reduced_modulus(seen.material, True), _reduced_modulus(seen.material, False))
+    size = 3 * np.abs(normal_force) / (4 * modulus * reduced_radius**2)
+    implied = np.copysign(np.cbrt(size * size), normal_force)
+    return ContactResiduals(normal, normal_force, np.sqrt(np.einsum("ij,ij->i", tangential, tangential)), reduced_radius, implied,
+                            -gap / reduced_radius, _cross_contact(seen, normal, normal_force) / reduced_radius)
+
+
+def _reduced_modulus(material: Material, wall: bool) -> float:
+    """E* of two grains, or of a grain and a wall [Pa]."""
+    grain = (1 - material.poisson_ratio**2) / material.youngs_modulus
+    return 1 / (grain + ((1 - material.wall_poisson_ratio**2) / material.wall_youngs_modulus if wall else grain))
+
+
+def _cross_contact(seen: "SeenScans", normal: Floats, normal_force: Floats) -> Floats:
+    """(C,) displacement of both grains' surfaces at each contact by their other contacts that push [m].
+
+    The paper's Eq. 1 with both points on the undeformed sphere (Gonzalez & Cuitino 2012), s = sin(theta / 2), in units of
+    (1 + nu) F/(4 pi E R).
+    """
+    grains = ~seen.is_wall
+    contact = np.concatenate([np.arange(len(normal)), np.flatnonzero(grains)])  # each from the side of its grain, then of its partner
+    owner = np.concatenate([seen.of_grain(seen.grain), seen.of_grain(seen.partner)[grains]])
+    outward = np.concatenate([normal, -normal[grains]])
+    # A table (grains, contacts of a grain): place of each side in it.
+    order = np.argsort(owner, kind="stable")
+    count = np.bincount(owner)
+    row = np.repeat(np.arange(np.count_nonzero(count)), count[count > 0])
+    column = np.arange(len(order)) - (np.cumsum(count) - count)[owner[order]]
+    shape = (row[-1] + 1 if len(row) else 0, count.max(initial=0))
+    direction, force = np.zeros((*shape, 3)), np.zeros(shape)
+    direction[row, column] = outward[order]
+    force[row, column] = np.maximum(normal_force[contact[order]], 0)
+
+    nu = seen.material.poisson_ratio
+    s = direction @ direction.transpose(0, 2, 1)  # the largest arrays: cosines, then s, without copies
+    s *= -0.5
+    s += 0.5
+    np.sqrt(np.maximum(s, CLOSEST, out=s), out=s)
+    displacement = (7 - 8 * nu) * s
+    displacement += np.divide(-2 * (1 - nu), s, out=s)
+    displacement -= 2 * (1 - 2 * nu)
+    own = np.arange(shape[1])
+    displacement[:, own, own] = 0
+    moved = np.einsum("gab,gb->ga", displacement, force)[row, column]
+    moved *= (1 + nu) / (4 * np.pi * seen.material.youngs_modulus * 0.5 * seen.diameter[owner[order] % len(seen.diameter)])
+    return np.bincount(contact[order], moved, len(normal)).astype(float)

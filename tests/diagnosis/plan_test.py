@@ -1,0 +1,132 @@
+"""What a diagnosis takes from an experiment: cycles, candidates, the motion of the plate. plan_test.py"""
+import functools
+import unittest
+from dataclasses import replace
+
+import numpy as np
+from small_trials import MEASUREMENT, packing, scene
+
+from mcdem import _engine as engine
+from mcdem.diagnosis.effects import EFFECTS
+from mcdem.diagnosis.plan import plan_of, plan_of_others
+from mcdem.errors import InputError
+from mcdem.experiment.experiment import Experiment, other_materials
+from mcdem.observe.observation import observe
+from mcdem.results.engine_run import run_of
+
+CYCLES = {cycles: scene(protocol__scan_at_start=True, protocol__cycles=cycles, protocol__stop_at_scans=True) for cycles in (1, 2)}
+
+
+@functools.cache
+def experiment(cycles):
+    """Simulated with the packing of the scene; the first cycle is the same for any number of cycles."""
+    run = engine.simulate_starts(engine.Device(), [(CYCLES[cycles], packing(), 0, 0, 1)])
+    return Experiment("measured", run_of(run).recordings[0], measurement=MEASUREMENT)
+
+
+def plan(cycles, measured, notes=None, candidates=(), base=None):
+    return plan_of(base or CYCLES[cycles], [measured], candidates, 8, 4, 1, False, (notes if notes is not None else []).append)
+
+
+def observed_by(plan):
+    comparison = plan.comparison
+    return observe(plan.experiments[0].recording, comparison.grid, comparison.material, comparison.discard)
+
+
+class Cycles(unittest.TestCase):
+    def test_are_those_of_the_scene(self):
+        one, two, notes = experiment(1), experiment(2), []
+        self.assertEqual(len(two.recording.scans), 2 * len(one.recording.scans) - 1)
+        same, first = plan(1, one, notes), plan(1, two, notes)
+        self.assertEqual(notes, ["measured: only the first cycle is compared, of 2; protocol.cycles in the scene is the number of cycles to simulate"])
+        self.assertEqual(first.model["protocol.cycles"], 1)
+        np.testing.assert_array_equal(observed_by(first), observed_by(same))
+        notes.clear()
+        both, only = plan(2, two, notes), plan(2, one, notes)
+        self.assertEqual((notes, both.model["protocol.cycles"], only.model["protocol.cycles"]), ([], 2, 1))
+        self.assertFalse(np.array_equal(observed_by(both), observed_by(same), equal_nan=True), "the second cycle differs")
+        np.testing.assert_array_equal(observed_by(only), observed_by(same))
+
+    def test_include_one_that_is_not_discarded(self):
+        discards = CYCLES[1]._variant({"protocol.discard": 1})
+        self.assertEqual(len(plan(1, experiment(2), base=discards).experiments[0].recording.scans), len(experiment(2).recording.scans))
+
+
+class Models(unittest.TestCase):
+    def test_have_the_experiments_box_plate_and_scans(self):
+        recording = experiment(1).recording
+        moved = replace(recording, box=replace(recording.box, size_x=0.061), plate_start=0.0601)
+        model = plan(1, replace(experiment(1), recording=moved)).model
+        self.assertEqual([model.scene._values[key] for key in ("box.size_x", "box.size_y", "plate.start", "protocol.scans_per_stroke")],
+                         [0.061, 0.06, 0.0601, 3])
+        self.assertAlmostEqual(model["plate.end"], 0.05, 6)
+        self.assertTrue(model["protocol.scan_at_start"])
+        self.assertAlmostEqual(model.mean_diameter, packing().diameter.mean(), 12)
+
+    def test_need_the_scenes_container_and_a_stroke(self):
+        recording = experiment(1).recording
+        up = replace(recording, plate_start=0.049)
+        other = engine.Scene.parse('[container]\nshape = "periodic"\nsize_x = 0.06\nsize_y = 0.06\n[packing]\ncount = 18')
+        for measured, base, problem in ((replace(experiment(1), recording=up), None, "must have loading frames below plate.start"),
+                                        (experiment(1), other, "container.shape must be box, as in measured")):
+            with self.assertRaisesRegex(InputError, problem):
+                plan(1, measured, base=base)
+
+    def test_follow_the_experiments_programme(self):
+        """A scene with a programme needs an experiment with one."""
+        programme = {"programme.1.stage": "move", "programme.1.position": "0.05", "programme.1.scans": "3"}
+        staged = CYCLES[1]._with_programme(programme)
+        with self.assertRaisesRegex(InputError, r"must state the \[\[programme\]\]"):
+            plan(1, experiment(1), base=staged)
+        recording = replace(experiment(1).recording, parameters={**experiment(1).recording.parameters, **programme})
+        model = plan(1, replace(experiment(1), recording=recording)).model
+        self.assertTrue(model.has_programme)
+        self.assertEqual(model["programme.1.position"], 0.05)
+
+    def test_of_others_have_other_packings_and_the_scenes_plate(self):
+        made = plan_of_others(CYCLES[1], experiment(1), 2, (), 4, 1, 9)
+        self.assertEqual([len(one) for _, one in made.packings], [18, 18])
+        self.assertNotEqual(made.packings[0][1].digest, made.packings[1][1].digest)
+        self.assertAlmostEqual(made.comparison.grid.stroke, 0.01, 12)
+
+
+class Packings(unittest.TestCase):
+    def test_of_one_experiment_are_measured_alike(self):
+        one = experiment(1)
+        recording = one.recording
+        short = replace(recording, scans=replace(recording.scans, plate_z=0.8 * (recording.scans.plate_z - 0.06) + 0.06))
+        staged = replace(recording, parameters={"programme.1.stage": "move", "programme.1.position": "0.05", "programme.1.scans": "3"})
+        for other, problem in ((replace(one, measurement=replace(MEASUREMENT, force_error=0.2)), r"the same \[measurement\]"),
+                               (replace(one, recording=short), "must be within a tenth"),
+                               (replace(one, recording=staged), r"the same \[\[programme\]\]")):
+            with self.assertRaisesRegex(InputError, problem):
+                plan_of(CYCLES[1], [one, replace(other, name="other")], (), 8, 4, 1, False, [].append)
+
+
+class Candidates(unittest.TestCase):
+    def test_are_all_that_the_model_allows(self):
+        every = plan(1, experiment(1))
+        self.assertEqual(len(every.candidates) + len(every.hindered), len(EFFECTS))
+        self.assertIn("cross_contact", [effect.name for effect in every.candidates])
+        self.assertEqual(every.hindered[0], "bulge_contacts: independent contacts have no surface displacements")
+        some = plan(1, experiment(1), candidates=["adhesion", "bulge_contacts"])
+        self.assertEqual(([effect.name for effect in some.candidates], len(some.hindered)), (["adhesion"], 1))
+
+    def test_must_be_effects_of_which_one_is_possible(self):
+        for names, problem in ((["adhesion", "phlogiston", "ether"], "(?s)phlogiston is not an effect; there are cross_contact.*ether is not"),
+                               (["bulge_contacts"], "must name an effect that can be tested, got bulge_contacts: independent")):
+            with self.assertRaisesRegex(InputError, problem):
+                plan(1, experiment(1), candidates=names)
+
+
+class Materials(unittest.TestCase):
+    def test_are_stated_by_the_experiment_and_not_the_scenes(self):
+        parameters = scene(grains__youngs_modulus=23300, grains__friction=0.1).parameters[0]
+        for stated, wanted in (({}, []), ({"grains.youngs_modulus": 23300.0, "grains.friction": 0.1}, []),
+                               ({"grains.youngs_modulus": 3e4, "grains.friction": 0.1}, ["grains.youngs_modulus = 30000 (scene: 23300)"])):
+            self.assertEqual(other_materials(stated, parameters), wanted)
+        self.assertEqual(other_materials({"grains.friction": 9.0}, {"species.1.name": "glass", "grains.friction": 0.1}), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
