@@ -1,6 +1,5 @@
 """Observables of the difference between implied and measured overlaps, between grains and at walls."""
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..results.names import Wall
 from ..results.recording import Bools, Floats, Ints
@@ -32,6 +31,7 @@ def _key(scan: Ints, i: Ints, j: Ints, count: int) -> Ints:
 
 def _overlapping(seen: SeenScans) -> tuple[Ints, Ints, Ints]:
     """Scan and grains of all pairs that overlap clearly. One tree has the grains of all scans, far apart from one another along z."""
+    from scipy.spatial import cKDTree  # pages, which list the observables, do without it
     count, box, largest = len(seen.diameter), seen.box, float(seen.diameter.max())
     position = seen.position.copy()
     size = None
