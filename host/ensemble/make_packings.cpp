@@ -75,19 +75,28 @@ std::vector<Packing> make_packings(const Scene& scene, const StopWanted& stop_wa
 }
 
 std::vector<Recording> simulate(Device& device, const Scene& scene, const std::vector<Packing>& packings,
-                                std::size_t scans_needed,
-                                const std::function<void(double fraction)>& on_progress) {
+                                const Callbacks& callbacks, const EarlyEnd& early) {
     std::vector<Recording> recordings;
     for (std::size_t r = 0; r < packings.size(); ++r)
         recordings.push_back(begin_recording(scene.replicas[r], packings[r]));
-    const auto keep = [&](int r, Scan scan) { recordings[r].scans.push_back(std::move(scan)); };
-    const auto note = [&](int r, const Failure& failure) { recordings[r].failure = failure; };
-    const auto complete = [&](const Recording& recording) {
-        return recording.failure || recording.scans.size() >= scans_needed;
-    };
     Simulation simulation(device, scene, packings);
-    while (!std::all_of(recordings.begin(), recordings.end(), complete) && simulation.advance(keep, note))
-        on_progress(simulation.progress());
+    const auto keep = [&](int replica, Scan scan) {
+        const auto r = static_cast<std::size_t>(replica);
+        recordings[r].scans.push_back(std::move(scan));
+        if (early.is_enough(r, recordings[r])) simulation.end(replica);
+    };
+    const auto note = [&](int replica, const Failure& failure) {
+        const auto r = static_cast<std::size_t>(replica);
+        recordings[r].failure = failure;
+        callbacks.on_failure(r, failure);
+    };
+    const auto complete = [&](const Recording& recording) {
+        return recording.failure || recording.scans.size() >= early.scans;
+    };
+    while (!std::ranges::all_of(recordings, complete) && simulation.advance(keep, note)) {
+        callbacks.on_progress(simulation.progress());
+        if (callbacks.stop_wanted()) throw Interrupted();
+    }
     return recordings;
 }
 

@@ -7,7 +7,7 @@
 
 #include "core/container.h"
 #include "core/parameters.h"
-#include "scene/random.h"
+#include "core/random.h"
 
 namespace mcdem::inline experiment {
 namespace {

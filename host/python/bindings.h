@@ -23,8 +23,8 @@ void bind_simulations(pybind11::module_& module);
 void bind_case_simulator(pybind11::module_& module);
 void bind_diagnosis_tables(pybind11::module_& module);
 
-/// Converts values of scene keys to int, float, bool or str; None for an empty text.
-pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);
+/// Values of scene keys as int, float, bool or str; None where they are not given.
+pybind11::dict parameter_dict(const Parameters& parameters);
 
 /// Invalid UTF-8, for example in paths, is decoded like os.fsdecode.
 pybind11::str python_text(const std::string& text);

@@ -3,11 +3,11 @@
 #include <pybind11/stl.h>
 
 #include "core/errors.h"
+#include "core/random.h"
 #include "ensemble/diagnosis/case_simulator.h"
 #include "ensemble/diagnosis/outside_effects.h"
 #include "python/bindings.h"
 #include "python/watch.h"
-#include "scene/random.h"
 
 namespace mcdem::inline python {
 namespace {
@@ -62,9 +62,8 @@ void bind_case_simulator(py::module_& module) {
                 std::vector<SimulatedCase> cases;
                 for (const auto& [folder, hidden, shifts, packing, seed] : rows)
                     cases.push_back({folder, hidden, shifts, packing, seed});
-                const auto part = loading ? CaseSimulator::Part::loading : CaseSimulator::Part::all;
                 return watched(std::move(progress),
-                               [&](const auto& p) { return s.simulate(cases, part, p); });
+                               [&](const auto& p) { return s.simulate(cases, loading, p); });
             },
             py::arg("cases"), py::arg("loading"), py::arg("progress") = py::none())
         .def(

@@ -9,6 +9,7 @@
 #include "diagnose/observe/compared_forces.h"
 #include "experiment/instrument.h"
 #include "python/bindings.h"
+#include "scene/read/keys.h"
 
 namespace mcdem::inline python {
 namespace {
@@ -95,7 +96,7 @@ Experiment experiment_of(const py::dict& fields) {
     experiment.name = fields["name"].cast<std::string>();
     Recording& recording = experiment.recording;
     recording.label = experiment.name;
-    recording.parameters = fields["parameters"].cast<KeyValues>();
+    recording.parameters = parameters_of(fields["parameters"].cast<ParameterTexts>());
     const auto size = fields["size"].cast<std::pair<double, double>>();
     recording.box = {size.first, size.second, *parse<ContainerShape>(fields["shape"].cast<std::string>())};
     recording.plate_start = fields["plate_start"].cast<double>();
@@ -137,7 +138,7 @@ void bind_experiment(py::module_& module) {
         "compared_forces",
         [](const Experiment& experiment) {
             const ComparedForces forces = compared_forces(experiment.recording);
-            return py::make_tuple(forces.displacement, forces.known, min_cells);
+            return py::make_tuple(forces.displacement, forces.known, min_bins);
         },
         py::arg("experiment"),
         "Displacements [m] at which a diagnosis compares forces while loading and unloading, the number of "

@@ -48,7 +48,7 @@ std::unique_ptr<Simulations> of_others(const Scene& scene, const Experiment& exp
                                        const fs::path& store, const std::vector<std::string>& candidates,
                                        int replicates, int pairs, std::uint64_t seed,
                                        const std::string& device) {
-    return watched(py::none(), [&](const TrialOptions& options) {
+    return watched(py::none(), [&](const Callbacks& options) {
         return std::make_unique<Simulations>(
             plan_of_others(scene, experiment, packings,
                            plan_options(candidates, replicates, pairs, seed, false), options.stop_wanted),
@@ -92,7 +92,7 @@ std::vector<Change> tuples(const std::vector<SettingChange>& changes) {
 }
 
 void bind_runs(py::class_<Simulations>& type) {
-    using Runs = Eigen::MatrixXd (Simulations::*)(const TrialOptions&);
+    using Runs = Eigen::MatrixXd (Simulations::*)(const Callbacks&);
     for (const auto& [name, runs] : {std::pair<const char*, Runs>{"library", &Simulations::library},
                                      {"baseline", &Simulations::baseline},
                                      {"finer_baseline", &Simulations::finer_baseline}})

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/errors.h"
-#include "ensemble/diagnosis/observe_trials.h"
+#include "ensemble/make_packings.h"
 
 namespace mcdem::inline python {
 
@@ -86,13 +86,13 @@ auto without_gil(Watch& watch, Work work) {
     return result;
 }
 
-/// The same with the progress of a Python callable; `work` gets TrialOptions.
+/// The same with the progress of a Python callable; `work` gets Callbacks.
 template <class Work>
 auto watched(pybind11::object progress, Work work) {
     Watch watch(std::move(progress));
     return without_gil(watch, [&] {
-        return work(TrialOptions{[&](double part) { watch.show_progress(part); },
-                                 [&] { return watch.stop_wanted(); }});
+        return work(
+            Callbacks{[&](double part) { watch.show_progress(part); }, [&] { return watch.stop_wanted(); }});
     });
 }
 

@@ -7,66 +7,38 @@
 #include <map>
 #include <set>
 
+#include "scene/read/keys.h"
+
 namespace mcdem {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::UnorderedElementsAreArray;
 
-/// Every number of a model that an effect may change.
+/// Every number of a model that an effect may change; those of keys, and of the instrument.
 std::map<std::string, double> numbers_of(const Model& m) {
-    const Replica& r = m.replica;
-    const Effects& e = r.effects;
     const Instrument& i = m.instrument;
-    return {{"contact.model", static_cast<double>(r.contact.model)},
-            {"contact.gamma", r.contact.gamma},
-            {"contact.friction_law", static_cast<double>(r.contact.friction_law)},
-            {"contact.sliding_velocity", r.contact.sliding_velocity},
-            {"grains.youngs_modulus", r.grains.youngs_modulus},
-            {"grains.poisson_ratio", r.grains.poisson_ratio},
-            {"grains.density", r.grains.density},
-            {"grains.excess_density", r.grains.excess_density},
-            {"grains.friction", r.grains.friction},
-            {"grains.restitution", r.grains.restitution},
-            {"grains.drag", r.grains.drag},
-            {"walls.youngs_modulus", r.walls.youngs_modulus},
-            {"walls.poisson_ratio", r.walls.poisson_ratio},
-            {"walls.friction", r.walls.friction},
-            {"walls.restitution", r.walls.restitution},
-            {"plate.start", r.plate.start},
-            {"plate.end", r.plate.end},
-            {"plate.speed", r.plate.speed},
-            {"numerics.time_step", r.numerics.time_step},
-            {"adhesion", e.adhesion},
-            {"cohesion", e.cohesion},
-            {"net_force_friction", e.net_force_friction},
-            {"viscoelasticity", e.viscoelasticity},
-            {"relaxation_time", e.relaxation_time},
-            {"stiffening", e.stiffening},
-            {"finite_strain", e.finite_strain},
-            {"plasticity", e.plasticity},
-            {"bulge_contacts", e.bulge_contacts},
-            {"friction_history", e.friction_history},
-            {"rolling_resistance", e.rolling_resistance},
-            {"modulus_scatter", e.modulus_scatter},
-            {"diameter_error", e.diameter_error},
-            {"polydispersity", e.polydispersity},
-            {"plate_tilt_x", e.plate_tilt_x},
-            {"plate_tilt_y", e.plate_tilt_y},
-            {"plate_compliance", e.plate_compliance},
-            {"position_error", i.stated.position_error},
-            {"force_threshold", i.stated.force_threshold},
-            {"force_bias", i.force_bias},
-            {"threshold_shift", i.threshold_shift},
-            {"position_bias", i.position_bias},
-            {"strain_offset", i.strain_offset},
-            {"gauge_drift", i.gauge_drift},
-            {"zero_drift", i.zero_drift},
-            {"gauge_hysteresis", i.gauge_hysteresis},
-            {"force_lag", i.force_lag},
-            {"guide_friction", i.guide_friction},
-            {"force_saturation", i.force_saturation},
-            {"mean_diameter", m.mean_diameter}};
+    std::map<std::string, double> all{{"contact.model", static_cast<double>(m.replica.contact.model)},
+                                      {"friction_law", static_cast<double>(m.replica.contact.friction_law)},
+                                      {"position_error", i.stated.position_error},
+                                      {"stated force_threshold", i.stated.force_threshold},
+                                      {"force_bias", i.force_bias},
+                                      {"threshold_shift", i.threshold_shift},
+                                      {"position_bias", i.position_bias},
+                                      {"strain_offset", i.strain_offset},
+                                      {"gauge_drift", i.gauge_drift},
+                                      {"zero_drift", i.zero_drift},
+                                      {"gauge_hysteresis", i.gauge_hysteresis},
+                                      {"force_lag", i.force_lag},
+                                      {"guide_friction", i.guide_friction},
+                                      {"force_saturation", i.force_saturation},
+                                      {"mean_diameter", m.mean_diameter}};
+    Settings settings;
+    settings.replica = m.replica;
+    for (const Key& key : keys())
+        if (const Parameter value = value_of(key, settings); std::holds_alternative<double>(value))
+            all[std::string(key.name)] = std::get<double>(value);
+    return all;
 }
 
 std::set<std::string> moved(const Model& before, const Model& after) {
@@ -79,25 +51,25 @@ std::set<std::string> moved(const Model& before, const Model& after) {
 /// The parameter that each effect changes.
 const std::map<std::string, std::set<std::string>> moves{
     {"cross_contact", {"contact.model", "contact.gamma"}},
-    {"bulge_contacts", {"bulge_contacts"}},
+    {"bulge_contacts", {"effects.bulge_contacts"}},
     {"friction", {"grains.friction"}},
     {"wall_friction", {"walls.friction"}},
-    {"friction_history", {"friction_history"}},
-    {"adhesion", {"adhesion"}},
-    {"adhesion_net_friction", {"adhesion", "net_force_friction"}},
-    {"cohesion", {"cohesion"}},
-    {"viscoelasticity", {"viscoelasticity"}},
-    {"stiffening", {"stiffening"}},
-    {"finite_strain", {"finite_strain"}},
-    {"plasticity", {"plasticity"}},
+    {"friction_history", {"effects.friction_history"}},
+    {"adhesion", {"effects.adhesion"}},
+    {"adhesion_net_friction", {"effects.adhesion", "effects.net_force_friction"}},
+    {"cohesion", {"effects.cohesion"}},
+    {"viscoelasticity", {"effects.viscoelasticity"}},
+    {"stiffening", {"effects.stiffening"}},
+    {"finite_strain", {"effects.finite_strain"}},
+    {"plasticity", {"effects.plasticity"}},
     {"buoyancy", {"grains.excess_density"}},
-    {"diameter_error", {"diameter_error"}},
-    {"polydispersity", {"polydispersity"}},
-    {"modulus_scatter", {"modulus_scatter"}},
-    {"rolling_resistance", {"rolling_resistance"}},
-    {"plate_tilt", {"plate_tilt_x"}},
-    {"plate_tilt_y", {"plate_tilt_y"}},
-    {"plate_compliance", {"plate_compliance"}},
+    {"diameter_error", {"effects.diameter_error"}},
+    {"polydispersity", {"effects.polydispersity"}},
+    {"modulus_scatter", {"effects.modulus_scatter"}},
+    {"rolling_resistance", {"effects.rolling_resistance"}},
+    {"plate_tilt", {"effects.plate_tilt_x"}},
+    {"plate_tilt_y", {"effects.plate_tilt_y"}},
+    {"plate_compliance", {"effects.plate_compliance"}},
     {"force_bias", {"force_bias"}},
     {"gauge_drift", {"gauge_drift"}},
     {"zero_drift", {"zero_drift"}},
@@ -233,7 +205,7 @@ TEST(Effects, AddToTheModelsAmplitude) {
         const std::string field = *moves.at(std::string(e.name)).begin();
         const double before = numbers_of(start).at(field), after = numbers_of(model).at(field);
         // The amplitudes of paired runs are positive in the end; only bulge_contacts and numerics decrease.
-        if (field == "bulge_contacts" || is_numerical(e.name))
+        if (field == "effects.bulge_contacts" || is_numerical(e.name))
             EXPECT_LT(after, before);
         else
             EXPECT_GT(after, before) << e.name;
@@ -244,7 +216,7 @@ TEST(Effects, FractionsStayBetweenZeroAndOne) {
     for (const char* name : {"viscoelasticity", "friction_history", "bulge_contacts"}) {
         Model model = full_model();
         find_effect(name)->apply(model, find_effect(name)->high);
-        const double after = numbers_of(model).at(name);
+        const double after = numbers_of(model).at("effects." + std::string(name));
         EXPECT_GE(after, 0) << name;
         EXPECT_LE(after, 1) << name;
     }

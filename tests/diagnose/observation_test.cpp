@@ -1,4 +1,4 @@
-// Recordings as vectors: local linear regression through the scans near a cell.
+// Recordings as vectors: local linear regression through the scans near a bin.
 #include "diagnose/observe/observation.h"
 
 #include <fmt/format.h>
@@ -35,8 +35,8 @@ const Grid grid{{0.01, 0.02}, 0.004, stroke};
 /// Top force while loading at both displacements, then while unloading.
 std::array<double, 4> top_forces(const Recording& recording, int discard = 0) {
     const Eigen::VectorXd all = observe(recording, grid, soft_material(), discard);
-    EXPECT_EQ(all.size(), static_cast<Eigen::Index>(cells_of(grid).size()));
-    for (Eigen::Index cell = 4; cell < all.size(); ++cell) EXPECT_TRUE(std::isnan(all[cell]));
+    EXPECT_EQ(all.size(), static_cast<Eigen::Index>(bins_of(grid).size()));
+    for (Eigen::Index bin = 4; bin < all.size(); ++bin) EXPECT_TRUE(std::isnan(all[bin]));
     return {all[0], all[1], all[2], all[3]};
 }
 
@@ -98,12 +98,12 @@ TEST(Observation, CyclesAreAveragedWithoutTheDiscardedOnes) {
 }
 
 TEST(Observation, CellsAreOrderedByObservableThenPhaseThenDisplacement) {
-    const auto cells = cells_of(grid);
-    ASSERT_EQ(cells.size(), 4 * observables().size());
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-        EXPECT_EQ(cells[k].observable, static_cast<int>(k / 4));
-        EXPECT_EQ(cells[k].phase, k % 4 < 2 ? Phase::load : Phase::unload);
-        EXPECT_EQ(cells[k].displacement, grid.displacement[k % 2]);
+    const auto bins = bins_of(grid);
+    ASSERT_EQ(bins.size(), 4 * observables().size());
+    for (std::size_t k = 0; k < bins.size(); ++k) {
+        EXPECT_EQ(bins[k].observable, static_cast<int>(k / 4));
+        EXPECT_EQ(bins[k].phase, k % 4 < 2 ? Phase::load : Phase::unload);
+        EXPECT_EQ(bins[k].displacement, grid.displacement[k % 2]);
     }
 }
 
@@ -116,13 +116,13 @@ TEST(Observation, OtherObservablesAreInTheirCells) {
     for (Contact& contact : recording.scans[1].contacts) contact.force *= 2;
     const Grid two{{0.01, 0.02}, 0.004, stroke};
     const auto all = observe(recording, two, soft_material());
-    const auto cells = cells_of(two);
+    const auto bins = bins_of(two);
     const auto load = scan_observables(recording, recording.scans[0], soft_material());
     const auto unload = scan_observables(recording, recording.scans[1], soft_material());
-    for (std::size_t k = 0; k < cells.size(); ++k) {
+    for (std::size_t k = 0; k < bins.size(); ++k) {
         const double seen = all[static_cast<Eigen::Index>(k)];
-        const double expected = (cells[k].phase == Phase::load ? load : unload)[cells[k].observable];
-        if (cells[k].displacement > 0.015 || std::isnan(expected))
+        const double expected = (bins[k].phase == Phase::load ? load : unload)[bins[k].observable];
+        if (bins[k].displacement > 0.015 || std::isnan(expected))
             EXPECT_TRUE(std::isnan(seen)) << k;
         else
             EXPECT_NEAR(seen, expected, 1e-9) << k;
@@ -210,7 +210,7 @@ TEST(Observation, ScansOfAHoldAreNotPartOfTheStroke) {
 
 TEST(Observation, AHoldWithoutAScanBeforeItStartsWithItsFirst) {
     Recording recording = held_recording("position");
-    recording.parameters["programme.1.scan_at"] = fmt::format("[{}]", start - 0.01);
+    recording.parameters["programme.1.scan_at"] = std::vector<double>{start - 0.01};
     std::erase_if(recording.scans, [](const Scan& scan) {
         return scan.phase == Phase::load && (scan.plate_z < start - 0.0105 && scan.plate_z > start - 0.0203);
     });

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "core/random.h"
 #include "diagnose/synthetic_scan.h"
-#include "scene/random.h"
 
 namespace mcdem::overlap_regression {
 namespace {

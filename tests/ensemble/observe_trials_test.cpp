@@ -25,7 +25,7 @@ TEST(ObserveTrials, AreTheSameAloneAndInABatch) {
     const std::vector<Trial> trials{small.trial(1), tilted, biased};
     const Eigen::MatrixXd together = observe_trials(device, small.common, trials, small.store, {});
     ASSERT_EQ(together.rows(), 3);
-    ASSERT_EQ(together.cols(), static_cast<Eigen::Index>(cells_of(small.common.grid).size()));
+    ASSERT_EQ(together.cols(), static_cast<Eigen::Index>(bins_of(small.common.grid).size()));
     EXPECT_TRUE(std::isfinite(together(0, 0)) && std::isfinite(together(0, 1)));
     EXPECT_NE(together(0, 1), together(1, 1));
     for (std::size_t k = 0; k < 3; ++k) {
@@ -38,8 +38,8 @@ TEST(ObserveTrials, AreTheSameAloneAndInABatch) {
 /// Counts the calls of progress: zero if nothing is simulated.
 struct Watched {
     int calls = 0;
-    TrialOptions options() {
-        TrialOptions o;
+    Callbacks options() {
+        Callbacks o;
         o.on_progress = [this](double fraction) {
             ++calls;
             EXPECT_GE(fraction, 0);
@@ -83,7 +83,7 @@ TEST(ObserveTrials, AnotherInstrumentUsesTheSameSimulation) {
 TEST(ObserveTrials, ContinueAfterAnInterruption) {
     const SmallTrials small;
     Device device;
-    TrialOptions impatient;
+    Callbacks impatient;
     impatient.stop_wanted = [] { return true; };
     EXPECT_THROW(observe_trials(device, small.common, {small.trial(1)}, small.store, impatient), Interrupted);
     EXPECT_EQ(files_in(small.folder.path / "simulations"), 0);
@@ -106,9 +106,9 @@ TEST(ObserveTrials, StoreRecordings) {
     EXPECT_EQ(recordings[0].diameter.size(), small.packing.size());
     EXPECT_NE(recordings[0].diameter[0], small.packing.diameter[0]);  // as measured
     const Eigen::VectorXd seen = observe(recordings[0], small.common.grid, small.common.material);
-    for (Eigen::Index cell = 0; cell < seen.size(); ++cell)
-        if (std::isfinite(seen[cell])) {
-            EXPECT_NEAR(seen[cell], row(0, cell), 1e-4) << cell;  // positions are stored as floats: 1e-8 m
+    for (Eigen::Index bin = 0; bin < seen.size(); ++bin)
+        if (std::isfinite(seen[bin])) {
+            EXPECT_NEAR(seen[bin], row(0, bin), 1e-4) << bin;  // positions are stored as floats: 1e-8 m
         }
     EXPECT_EQ(seen.array().isFinite().count(), row.array().isFinite().count());
     Watched again;
@@ -116,9 +116,9 @@ TEST(ObserveTrials, StoreRecordings) {
     EXPECT_EQ(again.calls, 0);
 }
 
-TEST(ObserveTrials, EndWhenNoCellNeedsMoreScans) {
+TEST(ObserveTrials, EndWhenNoBinNeedsMoreScans) {
     SmallTrials small;
-    small.common.grid.width = 0.003;  // the scan at 3.3 mm during unloading is the first that no cell needs
+    small.common.grid.width = 0.003;  // the scan at 3.3 mm during unloading is the first that no bin needs
     Device device;
     Trial kept = small.trial(1);
     kept.keep_recording = true;
@@ -137,7 +137,7 @@ public:
     Names() { observe_trials(device_, small.common, {small.trial(1)}, small.store, {}); }
 
     bool taken_for_the_kept(const TrialSettings& common, const Trial& trial) {
-        TrialOptions impatient;
+        Callbacks impatient;
         impatient.stop_wanted = [] { return true; };
         try {
             observe_trials(device_, common, {trial}, small.store, impatient);
@@ -303,7 +303,7 @@ TEST(ObserveTrials, InPartsAreTheSame) {
     EXPECT_TRUE(are_observed(device.description(), small.common, trials, small.store));
     EXPECT_FALSE(are_observed("another", small.common, trials, small.store));
     EXPECT_EQ(files_in(small.folder.path / "simulations"), 2);
-    TrialOptions none;
+    Callbacks none;
     none.on_progress = [](double) { ADD_FAILURE() << "simulated again"; };
     const auto got = observe_trials(device, small.common, trials, small.store, none);
     for (Eigen::Index t = 0; t < expected.rows(); ++t) {

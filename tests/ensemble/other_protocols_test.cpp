@@ -31,35 +31,35 @@ TEST(OtherProtocols, AHoldAtFullStrokeShowsRelaxation) {
     const auto protocols = other_protocols(small.common, soft.model.replica, false);
     ASSERT_EQ(protocols.size(), 2u);
     EXPECT_EQ(protocols[0].what, "hold the plate at full stroke for 0.6 s");
-    const auto cells = cells_of(small.common.grid);
+    const auto bins = bins_of(small.common.grid);
     const Eigen::VectorXd stroke = observed(small, soft, nullptr),
                           held = observed(small, soft, &protocols[0]),
                           rigid = observed(small, elastic, &protocols[0]);
     int found = 0;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-        const auto cell = static_cast<Eigen::Index>(c);
-        if (cells[c].observable != index_of(OfProgramme::relaxation)) {
-            EXPECT_EQ(std::isfinite(stroke[cell]), std::isfinite(held[cell])) << c;
+    for (std::size_t c = 0; c < bins.size(); ++c) {
+        const auto bin = static_cast<Eigen::Index>(c);
+        if (bins[c].observable != index_of(OfProgramme::relaxation)) {
+            EXPECT_EQ(std::isfinite(stroke[bin]), std::isfinite(held[bin])) << c;
             continue;
         }
-        EXPECT_TRUE(std::isnan(stroke[cell]));
-        if (std::isnan(held[cell])) continue;
+        EXPECT_TRUE(std::isnan(stroke[bin]));
+        if (std::isnan(held[bin])) continue;
         ++found;
-        EXPECT_EQ(cells[c].displacement, small.common.grid.displacement.back());
-        EXPECT_GT(held[cell], rigid[cell] + 0.1);
+        EXPECT_EQ(bins[c].displacement, small.common.grid.displacement.back());
+        EXPECT_GT(held[bin], rigid[bin] + 0.1);
     }
     EXPECT_EQ(found, 1);
 }
 
-TEST(OtherProtocols, OneMoreCycleHasTheCellsOfOne) {
+TEST(OtherProtocols, OneMoreCycleHasTheBinsOfOne) {
     const SmallTrials small;
     Trial trial = small.trial();
     trial.model.replica.effects.plasticity = 0.3;
     const auto protocols = other_protocols(small.common, trial.model.replica, false);
     const Eigen::VectorXd one = observed(small, trial, nullptr), two = observed(small, trial, &protocols[1]);
     EXPECT_FALSE(same(one, two));
-    for (Eigen::Index cell = 0; cell < one.size(); ++cell)
-        EXPECT_TRUE(std::isfinite(two[cell]) || !std::isfinite(one[cell])) << cell;
+    for (Eigen::Index bin = 0; bin < one.size(); ++bin)
+        EXPECT_TRUE(std::isfinite(two[bin]) || !std::isfinite(one[bin])) << bin;
 }
 
 // A slower plate leaves more time to relax: of the elastic force at full stroke less is left.
@@ -69,13 +69,12 @@ TEST(OtherProtocols, ASlowerPlateShowsTheRate) {
     const auto protocols = other_protocols(small.common, soft.model.replica, true);
     ASSERT_EQ(protocols.size(), 3u);
     EXPECT_EQ(protocols[2].what, "press 4 times slower");
-    const auto cells = cells_of(small.common.grid);
+    const auto bins = bins_of(small.common.grid);
     const auto force = [&](const Trial& trial, const OtherProtocol* protocol) {
         const Eigen::VectorXd seen = observed(small, trial, protocol);
-        for (std::size_t c = 0; c < cells.size(); ++c)
-            if (observables()[static_cast<std::size_t>(cells[c].observable)].name == "top_force" &&
-                cells[c].displacement == small.common.grid.displacement.back() &&
-                cells[c].phase == Phase::load)
+        for (std::size_t c = 0; c < bins.size(); ++c)
+            if (observables()[static_cast<std::size_t>(bins[c].observable)].name == "top_force" &&
+                bins[c].displacement == small.common.grid.displacement.back() && bins[c].phase == Phase::load)
                 return seen[static_cast<Eigen::Index>(c)];
         return std::nan("");
     };

@@ -46,7 +46,7 @@ TEST_F(SmallSimulations, OfALibraryAreBaselineEffectsAndNuisances) {
     EXPECT_EQ(probes[2].name, "modulus");
     EXPECT_EQ(probes[2].amplitudes[1], plan.library.nuisances[0].sigma);
     ASSERT_EQ(rows.rows(), 3 + 4 * static_cast<Eigen::Index>(probes.size()));
-    ASSERT_EQ(rows.cols(), static_cast<Eigen::Index>(cells_of(small.common.grid).size()));
+    ASSERT_EQ(rows.cols(), static_cast<Eigen::Index>(bins_of(small.common.grid).size()));
     for (const Eigen::Index row : {3, 4, 5, 6})
         EXPECT_EQ(rows(row, 0), rows((row - 3) % 2, 0)) << "the plate's force is not a contact force";
     // ln F of the plate increases by one with ln E, except for rearrangements.

@@ -1,6 +1,6 @@
 // Trials that run quickly: a few dozen grains, three scans.
 #pragma once
-#include "ensemble/diagnosis/build_library.h"
+#include "ensemble/diagnosis/library_trials.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/small_scene.h"
 

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "scene/random.h"
+#include "core/random.h"
 
 namespace mcdem::test::instrument {
 namespace {

@@ -6,8 +6,8 @@
 
 namespace mcdem::inline diagnose {
 
-/// Minimum number of cells that an experiment and its simulations must have in common.
-inline constexpr std::size_t min_cells = 4;
+/// Minimum number of bins that an experiment and its simulations must have in common.
+inline constexpr std::size_t min_bins = 4;
 
 struct ComparedForces {
     std::vector<double> displacement;  ///< where forces are compared, while loading and unloading [m]

@@ -17,7 +17,7 @@ class LocalLine {
 public:
     explicit LocalLine(Eigen::Index count) : sums_(Eigen::ArrayXXd::Zero(count, 5)) {}
 
-    /// `offset`: displacement minus that of the cell, over the width.
+    /// `offset`: displacement minus that of the bin, over the width.
     void add(double offset, const Eigen::VectorXd& values) {
         const double weight = 1 - std::abs(offset);
         for (Eigen::Index q = 0; q < values.size(); ++q) {
@@ -120,13 +120,13 @@ Grid grid_of(const Recording& experiment) {
     return grid;
 }
 
-std::vector<Cell> cells_of(const Grid& grid) {
-    std::vector<Cell> cells;
+std::vector<Bin> bins_of(const Grid& grid) {
+    std::vector<Bin> bins;
     for (std::size_t q = 0; q < observables().size(); ++q)
         for (const Phase phase : phases)
             for (const double displacement : grid.displacement)
-                cells.push_back({static_cast<int>(q), phase, displacement});
-    return cells;
+                bins.push_back({static_cast<int>(q), phase, displacement});
+    return bins;
 }
 
 namespace {

@@ -31,17 +31,17 @@ struct Grid {
 /// Four displacements of the experiment's stroke; the width covers at least three scans.
 Grid grid_of(const Recording& experiment);
 
-struct Cell {
+struct Bin {
     int observable = 0;  ///< index in observables()
     Phase phase = Phase::load;
     double displacement = 0;  ///< [m]
 };
 
-/// The cells of a grid: by observable, then phase, then displacement.
-std::vector<Cell> cells_of(const Grid& grid);
+/// The bins of a grid: by observable, then phase, then displacement.
+std::vector<Bin> bins_of(const Grid& grid);
 
-/// One value per cell; NaN if the recording does not determine it. Cycles after `discard` are averaged. A
-/// hold is assigned to the nearest displacement. Within the width of a cell a straight line is fitted through
+/// One value per bin; NaN if the recording does not determine it. Cycles after `discard` are averaged. A
+/// hold is assigned to the nearest displacement. Within the width of a bin a straight line is fitted through
 /// the scans (local linear regression, triangular weights), so the recordings that are compared need not have
 /// scans at the same displacements.
 Eigen::VectorXd observe(const Recording& recording, const Grid& grid, const ReferenceMaterial& material,

@@ -7,7 +7,7 @@
 
 #include "core/container.h"
 #include "core/least_squares.h"
-#include "scene/packing/cell_pairs.h"
+#include "core/near_pairs.h"
 
 namespace mcdem::inline diagnose {
 namespace {
@@ -97,7 +97,7 @@ std::array<double, 2> contact_occurrence(const Recording& recording, const Scan&
     std::ranges::sort(listed);
     double silent = 0;
     const double largest = *std::ranges::max_element(recording.diameter);
-    CellList(scan.position, recording.box, scan.plate_z, largest).for_each_pair([&](int i, int j) {
+    NeighbourGrid(scan.position, recording.box, scan.plate_z, largest).for_each_pair([&](int i, int j) {
         const double a = recording.diameter[i];
         const double b = recording.diameter[j];
         const double reach = 0.5 * (a + b) - clear_overlap * 0.5 * a * b / (a + b);

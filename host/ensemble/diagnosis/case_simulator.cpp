@@ -81,8 +81,8 @@ Model CaseSimulator::model_of_case(const SimulatedCase& c) const {
     return model;
 }
 
-std::vector<std::string> CaseSimulator::simulate(std::vector<SimulatedCase> cases, Part part,
-                                                 const TrialOptions& options) {
+std::vector<std::string> CaseSimulator::simulate(std::vector<SimulatedCase> cases, bool loading_only,
+                                                 const Callbacks& callbacks) {
     cases_ = std::move(cases);
     Scene batch = scene_;
     batch.replicas.clear();
@@ -93,11 +93,8 @@ std::vector<std::string> CaseSimulator::simulate(std::vector<SimulatedCase> case
         apply_jitter(starts.back(), start_jitter * stated_.mean_diameter, c.seed);
     }
     const auto loading = static_cast<std::size_t>(1 + stated_.replica.protocol.scans_per_stroke);
-    recordings_ = mcdem::simulate(device_, batch, starts, part == Part::loading ? loading : SIZE_MAX,
-                                  [&](double fraction) {
-                                      options.on_progress(fraction);
-                                      if (options.stop_wanted()) throw Interrupted();
-                                  });
+    recordings_ =
+        mcdem::simulate(device_, batch, starts, callbacks, {.scans = loading_only ? loading : SIZE_MAX});
     std::vector<std::string> failures;
     for (const Recording& recording : recordings_)
         failures.push_back(recording.failure ? recording.failure->text() : "");

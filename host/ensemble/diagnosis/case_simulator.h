@@ -34,11 +34,10 @@ public:
     /// Number of cases to simulate together.
     std::size_t at_once() const;
 
-    /// `Part`: scans of the first loading, or all. Returns where and why each case failed, empty if it did
-    /// not. The recordings are kept for measured() until the next call.
-    enum class Part { loading, all };
-    std::vector<std::string> simulate(std::vector<SimulatedCase> cases, Part part,
-                                      const TrialOptions& options);
+    /// `loading_only`: until all have the scans of the first loading. Returns where and why each case failed,
+    /// empty if it did not. The recordings are kept for measured() until the next call.
+    std::vector<std::string> simulate(std::vector<SimulatedCase> cases, bool loading_only,
+                                      const Callbacks& callbacks);
 
     /// A case of the last call as the instrument of the case reads it, in the stated box, with the name of
     /// its folder.

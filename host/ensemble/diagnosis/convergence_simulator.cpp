@@ -52,7 +52,7 @@ ConvergenceSimulator::ConvergenceSimulator(const Scene& scene, const std::filesy
     jitter_ = jitter > 0 ? jitter : jitter_of_diameter * mean_diameter_;
 }
 
-void ConvergenceSimulator::find_grid(const TrialOptions& options) {
+void ConvergenceSimulator::find_grid(const Callbacks& callbacks) {
     const Replica& replica = scene_.replicas.front();
     if (replica.programme.empty()) {
         grid_ = grid_of_stroke(replica);
@@ -62,7 +62,7 @@ void ConvergenceSimulator::find_grid(const TrialOptions& options) {
     trials.resize(1);
     trials.front().keep_recording = true;
     const TrialSettings settings = settings_of(scene_, trials.front().model);
-    observe_trials(device_, settings, trials, store_, options);
+    observe_trials(device_, settings, trials, store_, callbacks);
     const Recording recording = kept_recordings(device_, settings, trials, store_).front();
     if (recording.failure || recording.scans.empty())
         throw InputError(fmt::format(
@@ -73,11 +73,11 @@ void ConvergenceSimulator::find_grid(const TrialOptions& options) {
 }
 
 Eigen::MatrixXd ConvergenceSimulator::observe(const std::map<std::string, std::string>& values,
-                                              const TrialOptions& options) {
+                                              const Callbacks& callbacks) {
     if (grid_.displacement.empty()) throw std::logic_error("displacements are compared that were not found");
     const Scene changed = with_changes(scene_, values);
     const std::vector<Trial> trials = trials_of(changed.replicas.front(), jitter_);
-    return observe_trials(device_, settings_of(changed, trials.front().model), trials, store_, options);
+    return observe_trials(device_, settings_of(changed, trials.front().model), trials, store_, callbacks);
 }
 
 bool ConvergenceSimulator::draws_packings() const {

@@ -23,10 +23,10 @@ public:
     /// Finds the displacements that are compared: those of a diagnosis of an experiment with this scene's
     /// stroke or programme. The first copy is simulated if there is a programme. Throws InputError if that
     /// stops.
-    void find_grid(const TrialOptions& options);
+    void find_grid(const Callbacks& callbacks);
 
-    /// The scene with these values of keys. Row: copy, column: cell of the grid; NaN if a simulation failed.
-    Eigen::MatrixXd observe(const std::map<std::string, std::string>& values, const TrialOptions& options);
+    /// The scene with these values of keys. Row: copy, column: bin of the grid; NaN if a simulation failed.
+    Eigen::MatrixXd observe(const std::map<std::string, std::string>& values, const Callbacks& callbacks);
 
     /// Whether the packing is generated, so that there are others of its kind.
     bool draws_packings() const;

@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "core/errors.h"
+#include "core/random.h"
 #include "ensemble/make_packings.h"
 #include "scene/programme/legs.h"
 #include "scene/programme/programme_text.h"
-#include "scene/random.h"
 
 namespace mcdem::inline ensemble {
 namespace {

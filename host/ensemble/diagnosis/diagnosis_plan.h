@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/stop.h"
-#include "ensemble/diagnosis/build_library.h"
+#include "ensemble/diagnosis/library_trials.h"
 
 namespace mcdem::inline ensemble {
 

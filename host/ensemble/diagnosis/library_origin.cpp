@@ -28,7 +28,7 @@ std::map<std::string, std::string> library_origin(const TrialSettings& common, c
         if ((key.scope == Scope::replica && !key.name.starts_with("packing.")) ||
             key.name == "numerics.precision")
             origin[std::string(key.name)] = value_text(key, settings);
-    origin.merge(programme_parameters(model.replica.programme));
+    origin.merge(parameter_texts(programme_parameters(model.replica.programme)));
     const Measurement& stated = model.instrument.stated;
     origin["measurement.position_error"] = fmt::format("{}", stated.position_error);
     origin["measurement.diameter_error"] = fmt::format("{}", stated.diameter_error);

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "ensemble/diagnosis/build_library.h"
+#include "ensemble/diagnosis/library_trials.h"
 
 namespace mcdem::inline ensemble {
 

@@ -10,13 +10,13 @@
 #include <optional>
 
 #include "core/in_parallel.h"
+#include "core/random.h"
 #include "core/sha256.h"
+#include "ensemble/make_packings.h"
 #include "scene/packing/make_packing.h"
 #include "scene/packing/neighbour_slots.h"
 #include "scene/programme/programme_text.h"
-#include "scene/random.h"
 #include "scene/read/keys.h"
-#include "sim/simulation.h"
 
 namespace mcdem::inline ensemble {
 namespace {
@@ -35,7 +35,7 @@ std::string simulation_name(const std::string& device, const TrialSettings& comm
             key.name != "packing.frame")
             digest.add(key.name).add("=").add(value_text(key, settings)).add("\n");
     for (const auto& [key, value] : programme_parameters(trial.model.replica.programme))
-        digest.add(key).add("=").add(value).add("\n");
+        digest.add(key).add("=").add(parameter_text(value)).add("\n");
     for (const Vec3& position : trial.packing.position) digest.add(std::span(position.data(), 3));
     digest.add(trial.packing.diameter);
     for (const auto* vectors : {&trial.packing.velocity, &trial.packing.angular_velocity})
@@ -66,7 +66,7 @@ std::string observation_name(const std::string& simulation, const TrialSettings&
     return digest.hex();
 }
 
-/// The trials that look at one simulation.
+/// The trials that share one simulation.
 using Job = std::vector<std::size_t>;
 
 /// Of these trials, by the names of their simulations.
@@ -107,15 +107,15 @@ std::vector<std::size_t> numbers_of(const std::vector<Trial>& trials) {
 class Work {
 public:
     Work(Device& device, const TrialSettings& common, const std::vector<Trial>& trials,
-         const ObservationStore& store, const TrialOptions& options)
+         const ObservationStore& store, const Callbacks& callbacks)
         : device_(device),
           common_(common),
           trials_(trials),
           store_(store),
-          options_(options),
+          callbacks_(callbacks),
           names_(trials.size()),
           result_(Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(trials.size()),
-                                            static_cast<Eigen::Index>(cells_of(common.grid).size()),
+                                            static_cast<Eigen::Index>(bins_of(common.grid).size()),
                                             unknown)) {}
 
     Eigen::MatrixXd all() {
@@ -168,32 +168,23 @@ private:
             for (double& diameter : packings.back().diameter)
                 diameter += trial.diameter_jitter * random.normal();
         }
-        std::vector<Recording> recordings;
         for (std::size_t r = 0; r < packings.size(); ++r)
             batch.slots = std::max(batch.slots, slots_of(batch.replicas[r], packings[r]));
-        for (std::size_t r = 0; r < packings.size(); ++r)
-            recordings.push_back(begin_recording(batch.replicas[r], packings[r]));
-        Simulation simulation(device_, batch, packings);
-        const auto keep = [&](int r, Scan scan) {
-            const auto j = static_cast<std::size_t>(r);
-            recordings[j].scans.push_back(std::move(scan));
-            if (has_left_cells(jobs[j], batch.replicas[j], recordings[j])) simulation.end(r);
+        Callbacks callbacks = callbacks_;
+        callbacks.on_progress = [&](double part) { callbacks_.on_progress(from + (to - from) * part); };
+        callbacks.on_failure = [&](std::size_t j, const Failure& failure) {
+            callbacks_.on_failure(jobs[j].front(), failure);
         };
-        const auto note = [&](int r, const Failure& failure) {
-            const auto j = static_cast<std::size_t>(r);
-            recordings[j].failure = failure;
-            options_.on_failure(jobs[j].front(), failure);
+        EarlyEnd early;
+        early.is_enough = [&](std::size_t j, const Recording& recording) {
+            return has_left_bins(jobs[j], batch.replicas[j], recording);
         };
-        while (simulation.advance(keep, note)) {
-            options_.on_progress(from + (to - from) * simulation.progress());
-            if (options_.stop_wanted()) throw Interrupted();
-        }
-        look(jobs, recordings);
+        measure_and_store(jobs, simulate(device_, batch, packings, callbacks, early));
     }
 
-    /// Whether the plate has left the cells on its last way back: no later scan counts, and a plate that
+    /// Whether the plate has left the bins on its last way back: no later scan counts, and a plate that
     /// follows the load is slowest there. Recordings that are kept are whole.
-    bool has_left_cells(const Job& job, const Replica& replica, const Recording& recording) const {
+    bool has_left_bins(const Job& job, const Replica& replica, const Recording& recording) const {
         if (!replica.programme.empty()) return false;  // its plate may come back
         const Scan& last = recording.scans.back();
         if (last.phase != Phase::unload || last.cycle + 1 < replica.protocol.cycles) return false;
@@ -205,10 +196,10 @@ private:
     }
 
     /// Measures and observes on all cores; files are written by one thread, where errors can be reported.
-    void look(const std::vector<Job>& jobs, const std::vector<Recording>& recordings) {
+    void measure_and_store(const std::vector<Job>& jobs, const std::vector<Recording>& recordings) {
         std::vector<std::optional<Recording>> kept(trials_.size());
         in_parallel(jobs.size(), [&](std::size_t j) {
-            for (const std::size_t t : jobs[j]) look_at(t, recordings[j], kept[t]);
+            for (const std::size_t t : jobs[j]) measure(t, recordings[j], kept[t]);
         });
         for (const Job& job : jobs)
             for (const std::size_t t : job) {
@@ -217,7 +208,7 @@ private:
             }
     }
 
-    void look_at(std::size_t t, const Recording& truth, std::optional<Recording>& kept) {
+    void measure(std::size_t t, const Recording& truth, std::optional<Recording>& kept) {
         Recording seen = measured(truth, trials_[t].model.instrument, trials_[t].seed);
         if (!truth.failure)
             result_.row(static_cast<Eigen::Index>(t)) =
@@ -229,7 +220,7 @@ private:
     const TrialSettings& common_;
     const std::vector<Trial>& trials_;
     const ObservationStore& store_;
-    const TrialOptions& options_;
+    const Callbacks& callbacks_;
     std::vector<std::string> simulations_, names_;  ///< by trial
     Eigen::MatrixXd result_;
 };
@@ -237,8 +228,8 @@ private:
 }  // namespace
 
 Eigen::MatrixXd observe_trials(Device& device, const TrialSettings& common, const std::vector<Trial>& trials,
-                               const ObservationStore& store, const TrialOptions& options) {
-    return Work(device, common, trials, store, options).all();
+                               const ObservationStore& store, const Callbacks& callbacks) {
+    return Work(device, common, trials, store, callbacks).all();
 }
 
 std::vector<std::vector<Trial>> parts_of_trials(const TrialSettings& common,

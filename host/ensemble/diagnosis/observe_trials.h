@@ -1,15 +1,13 @@
 // Many small simulations, each observed through an instrument, for signature libraries, noise floors and the
 // confirmation of effects.
 #pragma once
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "cl/device.h"
-#include "core/stop.h"
 #include "diagnose/effects.h"
 #include "diagnose/observe/observation.h"
 #include "ensemble/diagnosis/observation_store.h"
+#include "ensemble/make_packings.h"
 
 namespace mcdem::inline ensemble {
 
@@ -33,18 +31,12 @@ struct TrialSettings {
     std::string program;  ///< version and commit
 };
 
-struct TrialOptions {
-    std::function<void(double fraction)> on_progress = [](double) {};
-    StopWanted stop_wanted = never_stop;
-    /// Receives the index of a trial and why its simulation failed. Results in the store have no reason.
-    std::function<void(std::size_t, const Failure&)> on_failure = [](std::size_t, const Failure&) {};
-};
-
-/// Row: trial, column: cell; NaN if a simulation failed. Trials that differ only in the instrument share a
-/// simulation, and results in the store are reused. Results are stored as they are computed. Throws
+/// Row: trial, column: bin; NaN if a simulation failed. Trials that differ only in the instrument share a
+/// simulation, and results in the store are reused, without a call of on_failure. Results are stored as they
+/// are computed. Throws
 /// Interrupted if stop_wanted returns true.
 Eigen::MatrixXd observe_trials(Device& device, const TrialSettings& common, const std::vector<Trial>& trials,
-                               const ObservationStore& store, const TrialOptions& options);
+                               const ObservationStore& store, const Callbacks& callbacks);
 
 /// Divides the trials into parts that can be simulated separately; the division does not depend on the
 /// device. Trials that share a simulation are in the same part.

@@ -43,30 +43,30 @@ std::map<std::string, std::string> Simulations::origin() const {
 Eigen::MatrixXd Simulations::observed() const {
     const TrialSettings& common = plan_.common;
     Eigen::MatrixXd rows(static_cast<Eigen::Index>(plan_.experiments.size()),
-                         static_cast<Eigen::Index>(cells_of(common.grid).size()));
+                         static_cast<Eigen::Index>(bins_of(common.grid).size()));
     for (std::size_t p = 0; p < plan_.experiments.size(); ++p)
         rows.row(static_cast<Eigen::Index>(p)) =
             observe(plan_.experiments[p].recording, common.grid, common.material, common.discard);
     return rows;
 }
 
-Eigen::MatrixXd Simulations::observe_probes(const Trials& trials, TrialOptions options) {
-    options.on_failure = [this](std::size_t trial, const Failure& failure) {
+Eigen::MatrixXd Simulations::observe_probes(const Trials& trials, Callbacks callbacks) {
+    callbacks.on_failure = [this](std::size_t trial, const Failure& failure) {
         causes_.emplace(probe_of_trial(plan_.library, trial), failure.cause);
     };
-    return observe_trials(opened(), plan_.common, trials, store_, options);
+    return observe_trials(opened(), plan_.common, trials, store_, callbacks);
 }
 
-Eigen::MatrixXd Simulations::library(const TrialOptions& options) {
-    return observe_probes(library_trials(plan_.library), options);
+Eigen::MatrixXd Simulations::library(const Callbacks& callbacks) {
+    return observe_probes(library_trials(plan_.library), callbacks);
 }
 
-Eigen::MatrixXd Simulations::baseline(const TrialOptions& options) {
-    return observe_probes(baseline_trials(plan_.library), options);
+Eigen::MatrixXd Simulations::baseline(const Callbacks& callbacks) {
+    return observe_probes(baseline_trials(plan_.library), callbacks);
 }
 
-Eigen::MatrixXd Simulations::finer_baseline(const TrialOptions& options) {
-    return observe_trials(opened(), plan_.common, finer_baseline_trials(plan_.library), store_, options);
+Eigen::MatrixXd Simulations::finer_baseline(const Callbacks& callbacks) {
+    return observe_trials(opened(), plan_.common, finer_baseline_trials(plan_.library), store_, callbacks);
 }
 
 void Simulations::apply(Model& model, const Amplitudes& amplitudes) const {
@@ -90,7 +90,7 @@ Simulations::Trials Simulations::trials_of(const Amplitudes& fit, int runs) cons
 }
 
 Eigen::MatrixXd Simulations::fitted(const std::vector<Amplitudes>& fits, int runs,
-                                    std::optional<std::size_t> protocol, const TrialOptions& options) {
+                                    std::optional<std::size_t> protocol, const Callbacks& callbacks) {
     Trials all;
     for (const Amplitudes& fit : fits)
         for (Trial& trial : trials_of(fit, runs)) {
@@ -98,7 +98,7 @@ Eigen::MatrixXd Simulations::fitted(const std::vector<Amplitudes>& fits, int run
             all.push_back(std::move(trial));
         }
     return observe_trials(opened(), protocol ? protocols_.at(*protocol).common : plan_.common, all, store_,
-                          options);
+                          callbacks);
 }
 
 Simulations::Trials Simulations::recorded_trials(const Amplitudes& fit, int runs) const {
@@ -108,8 +108,8 @@ Simulations::Trials Simulations::recorded_trials(const Amplitudes& fit, int runs
     return trials;
 }
 
-void Simulations::record(const Amplitudes& fit, int runs, const TrialOptions& options) {
-    observe_trials(opened(), plan_.common, recorded_trials(fit, runs), store_, options);
+void Simulations::record(const Amplitudes& fit, int runs, const Callbacks& callbacks) {
+    observe_trials(opened(), plan_.common, recorded_trials(fit, runs), store_, callbacks);
 }
 
 std::vector<Recording> Simulations::recordings(const Amplitudes& fit, int runs) {
@@ -182,8 +182,8 @@ std::vector<std::size_t> Simulations::missing_parts(const std::string& device) {
     return numbers;
 }
 
-void Simulations::compute_part(std::size_t part, const TrialOptions& options) {
-    observe_trials(opened(), plan_.common, parts().at(part), store_, options);
+void Simulations::compute_part(std::size_t part, const Callbacks& callbacks) {
+    observe_trials(opened(), plan_.common, parts().at(part), store_, callbacks);
 }
 
 }  // namespace mcdem::ensemble

@@ -18,7 +18,7 @@ namespace mcdem::inline ensemble {
 /// Amplitudes by name, of effects and of nuisances: what a fitted simulation has that the scene has not.
 using Amplitudes = std::vector<std::pair<std::string, double>>;
 
-/// Observations are matrices: a row for each simulation, NaN if it failed; a column for each cell of the
+/// Observations are matrices: a row for each simulation, NaN if it failed; a column for each bin of the
 /// grid. Simulations are kept in a folder and never repeated.
 class Simulations {
 public:
@@ -39,19 +39,19 @@ public:
 
     /// The trials of a library: the baseline, packing after packing; then for each probe and each of its two
     /// amplitudes the paired rows of the baseline again.
-    Eigen::MatrixXd library(const TrialOptions& options);
+    Eigen::MatrixXd library(const Callbacks& callbacks);
 
-    Eigen::MatrixXd baseline(const TrialOptions& options);
+    Eigen::MatrixXd baseline(const Callbacks& callbacks);
     /// With half the error of positions.
-    Eigen::MatrixXd finer_baseline(const TrialOptions& options);
+    Eigen::MatrixXd finer_baseline(const Callbacks& callbacks);
     /// `runs` of every packing with each of the fits, with the protocol of other_protocols() if given.
     Eigen::MatrixXd fitted(const std::vector<Amplitudes>& fits, int runs, std::optional<std::size_t> protocol,
-                           const TrialOptions& options);
+                           const Callbacks& callbacks);
     /// Why simulations failed until now, by the probe (library) or "" (unchanged scene).
     const std::map<std::string, std::string>& causes_of_failure() const { return causes_; }
 
     /// Stores recordings of the first `runs` of the baseline, or of a fit.
-    void record(const Amplitudes& fit, int runs, const TrialOptions& options);
+    void record(const Amplitudes& fit, int runs, const Callbacks& callbacks);
     /// Those that `record` has stored.
     std::vector<Recording> recordings(const Amplitudes& fit, int runs);
 
@@ -71,7 +71,7 @@ public:
     /// Parts of the library's simulations, for several processes; those of `device` that are missing.
     std::size_t count_parts();
     std::vector<std::size_t> missing_parts(const std::string& device);
-    void compute_part(std::size_t part, const TrialOptions& options);
+    void compute_part(std::size_t part, const Callbacks& callbacks);
 
 private:
     using Trials = std::vector<Trial>;
@@ -81,7 +81,7 @@ private:
     Trials trials_of(const Amplitudes& fit, int runs) const;
     Trials recorded_trials(const Amplitudes& fit, int runs) const;
     const std::vector<Trials>& parts();
-    Eigen::MatrixXd observe_probes(const Trials& trials, TrialOptions options);
+    Eigen::MatrixXd observe_probes(const Trials& trials, Callbacks callbacks);
 
     DiagnosisPlan plan_;
     ObservationStore store_;

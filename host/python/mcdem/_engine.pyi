@@ -67,7 +67,7 @@ def expect_plain_strokes(scene: Scene, what: str) -> None: ...
 def other_materials(scene: Scene, stated: Mapping[str, float]) -> list[str]: ...
 
 class Random:
-    """Random numbers of a seed and a stream (host/scene/random.h)."""
+    """Random numbers of a seed and a stream (host/core/random.h)."""
 
     def __init__(self, seed: int, stream: str) -> None: ...
     def uniform(self, low: float = 0.0, high: float = 1.0) -> float: ...
@@ -94,7 +94,7 @@ def scan_places(parameters: Mapping[str, str], plate_start: float) -> list[dict[
 class Simulations:
     """The simulations that a diagnosis asks for (host/ensemble/diagnosis/simulations.h), which are kept in the folder `store`.
 
-    Results are (simulations, cells), NaN where a simulation failed.
+    Results are (simulations, bins), NaN where a simulation failed.
     """
 
     def __init__(self, scene: Scene, experiments: Sequence[Experiment], store: Path, *, candidates: Sequence[str], replicates: int,

@@ -1,5 +1,5 @@
 // The trials of a library, and the effects that it can have.
-#include "ensemble/diagnosis/build_library.h"
+#include "ensemble/diagnosis/library_trials.h"
 
 #include <gmock/gmock.h>
 

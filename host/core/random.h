@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace mcdem::inline scene {
+namespace mcdem::inline core {
 
 /// Purpose of a stream of random numbers; streams with the same seed are independent.
 enum class Stream : std::uint64_t {
@@ -116,4 +116,4 @@ struct TruncatedNormal {
     }
 };
 
-}  // namespace mcdem::scene
+}  // namespace mcdem::core

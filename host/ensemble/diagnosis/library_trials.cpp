@@ -1,4 +1,4 @@
-#include "ensemble/diagnosis/build_library.h"
+#include "ensemble/diagnosis/library_trials.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

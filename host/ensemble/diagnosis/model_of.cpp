@@ -8,7 +8,6 @@
 #include "core/errors.h"
 #include "core/parameters.h"
 #include "ensemble/diagnosis/diagnosis_plan.h"
-#include "scene/packing/packing_fields.h"
 #include "scene/programme/programme_text.h"
 
 namespace mcdem::inline ensemble {
@@ -85,10 +84,9 @@ std::vector<std::string> other_materials(const Replica& replica,
     std::vector<std::string> list;
     if (!replica.species.empty()) return list;
     for (const auto& [name, material] : stated) {
-        const std::string used = value_of(replica.parameters, name);
-        if (const double value = to_number(used).value_or(material);
-            std::abs(value - material) > 1e-6 * std::abs(material))
-            list.push_back(fmt::format("{} = {} (scene: {})", name, material, used));
+        const auto* used = std::get_if<double>(&find_parameter(replica.parameters, name));
+        if (used && std::abs(*used - material) > 1e-6 * std::abs(material))
+            list.push_back(fmt::format("{} = {} (scene: {})", name, material, *used));
     }
     return list;
 }
