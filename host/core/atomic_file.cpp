@@ -140,25 +140,6 @@ void NewFile::put_in_place() {
     temporary_.clear();
 }
 
-NewFolder::NewFolder(const fs::path& place) {
-    while (lock_ < 0) {
-        path_ = temporary_of(place);
-        if (::mkdir(path_.c_str(), 0700) != 0) {
-            if (errno != EEXIST) fail(place, errno);
-            continue;
-        }
-        lock_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-        if (lock_ < 0 && errno != ENOENT) fail(place, errno);
-        if (lock_ >= 0 && !lock_before_removal(lock_)) ::close(std::exchange(lock_, -1));
-    }
-}
-
-NewFolder::~NewFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-    ::close(lock_);
-}
-
 void replace_file(const fs::path& file, const std::function<void(NewFile& out)>& write) {
     NewFile out(file);
     write(out);

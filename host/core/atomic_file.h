@@ -32,22 +32,6 @@ private:
     int lock_ = -1;  ///< keeps the file locked until it is in place
 };
 
-/// A temporary folder with an unpredictable name beside `place`, for this user alone. The destructor removes
-/// it with its content; after a killed program, remove_temporaries_of(place) does. Throws RunError.
-class NewFolder {
-public:
-    explicit NewFolder(const std::filesystem::path& place);
-    ~NewFolder();
-    NewFolder(const NewFolder&) = delete;
-    NewFolder& operator=(const NewFolder&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-    int lock_ = -1;  ///< keeps the folder locked
-};
-
 /// Creates a new file, lets `write` fill it, and replaces `file` with it. A reader sees the old or the new
 /// file, even after a crash or a power failure. If `write` throws, the old file is kept.
 void replace_file(const std::filesystem::path& file, const std::function<void(NewFile& out)>& write);

@@ -114,10 +114,10 @@ inline double reduced_radius(const Box& box, Wall wall, double radius) {
 /// Distance of a point from an existing wall, negative outside; the plate is level at plate_z [m].
 inline double wall_distance(const Box& box, Wall wall, double plate_z, const Vec3& point) {
     if (is_cylinder(box) && wall == curved_wall) return cylinder_radius(box) - from_axis(box, point).norm();
-    const double places[wall_count] = {0, box.size_x, 0, box.size_y, 0, plate_z};
+    const double positions[wall_count] = {0, box.size_x, 0, box.size_y, 0, plate_z};
     const int number = static_cast<int>(wall);
-    const double place = places[number], coordinate = point[number / 2];
-    return number % 2 ? place - coordinate : coordinate - place;
+    const double wall_at = positions[number], coordinate = point[number / 2];
+    return number % 2 ? wall_at - coordinate : coordinate - wall_at;
 }
 
 }  // namespace mcdem::core

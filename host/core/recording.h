@@ -5,13 +5,13 @@
 
 #include <array>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/names.h"
 #include "core/packing.h"
+#include "core/parameters.h"
 
 namespace mcdem::inline core {
 
@@ -94,8 +94,8 @@ struct Failure {
 
 /// Results of one packing: a replica of a run, or an experiment.
 struct Recording {
-    std::string label;  ///< distinguishes it within its run, e.g. "mc_dem, packing 3"
-    std::map<std::string, std::string> parameters;  ///< every scene key with its value for this replica
+    std::string label;      ///< distinguishes it within its run, e.g. "mc_dem, packing 3"
+    Parameters parameters;  ///< every scene key with its value for this replica
     Box box;
     double plate_start = 0;        ///< plate position at displacement zero [m]
     std::vector<double> diameter;  ///< [m]

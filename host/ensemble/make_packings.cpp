@@ -74,38 +74,29 @@ std::vector<Packing> make_packings(const Scene& scene, const StopWanted& stop_wa
     return packings;
 }
 
-namespace {
-
-bool is_on_last_way_back(const Replica& replica, const Scan& scan) {
-    return replica.programme.empty() && scan.phase == Phase::unload &&
-           scan.cycle + 1 >= replica.protocol.cycles;
-}
-
-}  // namespace
-
 std::vector<Recording> simulate(Device& device, const Scene& scene, const std::vector<Packing>& packings,
-                                const SimulateOptions& options) {
+                                const Callbacks& callbacks, const EarlyEnd& early) {
     std::vector<Recording> recordings;
     for (std::size_t r = 0; r < packings.size(); ++r)
         recordings.push_back(begin_recording(scene.replicas[r], packings[r]));
     Simulation simulation(device, scene, packings);
-    const auto keep = [&](int r, Scan scan) {
-        const auto place = static_cast<std::size_t>(r);
-        Recording& recording = recordings[place];
-        recording.scans.push_back(std::move(scan));
-        const Scan& last = recording.scans.back();
-        if (!options.end_below.empty() && is_on_last_way_back(scene.replicas[place], last) &&
-            recording.displacement(last) < options.end_below[place])
-            simulation.end(r);
+    const auto keep = [&](int replica, Scan scan) {
+        const auto r = static_cast<std::size_t>(replica);
+        recordings[r].scans.push_back(std::move(scan));
+        if (early.is_enough(r, recordings[r])) simulation.end(replica);
     };
-    const auto note = [&](int r, const Failure& failure) {
-        recordings[static_cast<std::size_t>(r)].failure = failure;
+    const auto note = [&](int replica, const Failure& failure) {
+        const auto r = static_cast<std::size_t>(replica);
+        recordings[r].failure = failure;
+        callbacks.on_failure(r, failure);
     };
     const auto complete = [&](const Recording& recording) {
-        return recording.failure || recording.scans.size() >= options.scans_needed;
+        return recording.failure || recording.scans.size() >= early.scans;
     };
-    while (!std::ranges::all_of(recordings, complete) && simulation.advance(keep, note))
-        options.on_progress(simulation.progress());
+    while (!std::ranges::all_of(recordings, complete) && simulation.advance(keep, note)) {
+        callbacks.on_progress(simulation.progress());
+        if (callbacks.stop_wanted()) throw Interrupted();
+    }
     return recordings;
 }
 

@@ -15,19 +15,25 @@ namespace mcdem::inline ensemble {
 /// work. Throws InputError with all problems, Interrupted.
 std::vector<Packing> make_packings(const Scene& scene, const StopWanted& stop_wanted = never_stop);
 
-/// When a simulation without files ends before its protocol does, and whom it tells.
-struct SimulateOptions {
-    /// Ends when every replica has failed or has this many scans.
-    std::size_t scans_needed = SIZE_MAX;
-    /// By replica, or empty: a replica ends where on its last way back the displacement of the plate is less
-    /// [m].
-    std::vector<double> end_below = {};
-    /// Receives the completed fraction of the whole protocol; may throw.
-    std::function<void(double fraction)> on_progress = [](double) {};
+/// What simulations tell their caller, and ask.
+struct Callbacks {
+    std::function<void(double fraction)> on_progress = [](double) {};  ///< completed part of the protocol
+    StopWanted stop_wanted = never_stop;
+    /// Receives the index of a simulation and why it failed.
+    std::function<void(std::size_t, const Failure&)> on_failure = [](std::size_t, const Failure&) {};
 };
 
-/// Runs a scene without files: one recording per replica.
+/// When simulations end before their protocols do.
+struct EarlyEnd {
+    std::size_t scans = SIZE_MAX;  ///< all end as soon as each has failed or has this number of scans
+    /// Asked after each scan: whether this replica needs no more.
+    std::function<bool(std::size_t replica, const Recording&)> is_enough = [](std::size_t, const Recording&) {
+        return false;
+    };
+};
+
+/// Runs a scene without files: one recording per replica. Throws Interrupted if stop_wanted returns true.
 std::vector<Recording> simulate(Device& device, const Scene& scene, const std::vector<Packing>& packings,
-                                const SimulateOptions& options);
+                                const Callbacks& callbacks = {}, const EarlyEnd& early = {});
 
 }  // namespace mcdem::ensemble

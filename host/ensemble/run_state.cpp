@@ -10,6 +10,7 @@
 #include "core/parameters.h"
 #include "core/sha256.h"
 #include "io/result_file.h"
+#include "io/run_packing.h"
 #include "scene/read/read_scene.h"
 
 namespace mcdem::inline ensemble {
@@ -48,14 +49,16 @@ std::string digest_of(const std::vector<Packing>& packings) {
 std::string changed_keys(const std::string& now, const std::string& then) {
     std::string text;
     try {
-        const Scene new_scene = parse_scene(now, "scene"), old_scene = parse_scene(then, "scene");
+        const Scene new_scene = parse_scene(now, "scene", {}, read_packing_or_run),
+                    old_scene = parse_scene(then, "scene", {}, read_packing_or_run);
         const std::size_t replicas = std::min(new_scene.replicas.size(), old_scene.replicas.size());
         for (std::size_t r = 0; r < replicas && text.empty(); ++r) {
             const auto& is = new_scene.replicas[r].parameters;
             const auto& was = old_scene.replicas[r].parameters;
             for (const auto& key : keys_that_vary({is, was}))
-                text += fmt::format("{}{} is {}, was {}", text.empty() ? "" : "; ", key, value_of(is, key),
-                                    value_of(was, key));
+                text += fmt::format("{}{} is {}, was {}", text.empty() ? "" : "; ", key,
+                                    parameter_text(find_parameter(is, key)),
+                                    parameter_text(find_parameter(was, key)));
         }
     } catch (const InputError&) {  // a scene of another version
     }

@@ -12,7 +12,6 @@
 #include "core/csv_text.h"
 #include "core/errors.h"
 #include "core/output_file.h"
-#include "core/parameters.h"
 #include "io/results.h"
 
 namespace mcdem::inline io {
@@ -30,8 +29,9 @@ constexpr const char* header =
 constexpr std::pair<int, int> voigt[] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 
 /// Numbers are not changed, words are quoted.
-std::string value_text(const std::string& value) {
-    return is_number(value) || value.empty() ? value : csv_cell(without_quotes(value));
+std::string csv_value(const Parameter& value) {
+    const std::string text = parameter_text(value);
+    return is_number(text) || text.empty() ? text : csv_cell(without_quotes(text));
 }
 
 /// The force that presses a flat wall, or a face of a cell, outwards; NaN for a wall that is missing or not
@@ -55,7 +55,9 @@ double along_side(const Box& box, const Scan& scan) {
 std::string csv_text(const Run& run, const StopWanted& stop_wanted) {
     fmt::memory_buffer text;
     auto out = std::back_inserter(text);
-    const auto keys = keys_that_vary(run.recordings);
+    std::vector<Parameters> parameters_of_all;
+    for (const Recording& recording : run.recordings) parameters_of_all.push_back(recording.parameters);
+    const auto keys = keys_that_vary(parameters_of_all);
     fmt::format_to(out, header);
     const bool any_side = std::ranges::any_of(
         run.recordings, [](const Recording& recording) { return is_cylinder(recording.box); });
@@ -71,7 +73,7 @@ std::string csv_text(const Run& run, const StopWanted& stop_wanted) {
         const std::string label = csv_cell(recording.label);
         std::string parameters;
         for (const auto& key : keys)
-            parameters.append(",").append(value_text(value_of(recording.parameters, key)));
+            parameters.append(",").append(csv_value(find_parameter(recording.parameters, key)));
         for (const Scan& scan : recording.scans) {
             // "{}" prints the shortest digits that give the same number when read.
             fmt::format_to(out, "{},{},{},{},{},{},{},{},", r, label, scan.frame, scan.cycle,

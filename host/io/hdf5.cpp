@@ -48,11 +48,11 @@ std::string library_reason() {
 /// Whether the library could not allocate memory.
 bool library_lacks_memory() {
     bool lacks = false;
-    const auto look = [](unsigned, const H5E_error2_t* error, void* lacks) -> herr_t {
+    const auto visit = [](unsigned, const H5E_error2_t* error, void* lacks) -> herr_t {
         if (error->maj_num == H5E_RESOURCE) *static_cast<bool*>(lacks) = true;
         return 0;
     };
-    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, look, &lacks);
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, visit, &lacks);
     return lacks;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "scene/read/keys.h"
 
 namespace mcdem::inline io {
 namespace {
@@ -87,8 +88,9 @@ Recording ResultFile::recording_header(std::size_t replica) const {
     const auto parameters = file_.read_texts(parameters_path(replica));
     if (parameters.size() % 2 != 0)
         throw InputError(file_.where(parameters_path(replica)) + ": must be pairs");
-    for (std::size_t i = 0; i < parameters.size(); i += 2)
-        recording.parameters[parameters[i]] = parameters[i + 1];
+    ParameterTexts texts;
+    for (std::size_t i = 0; i < parameters.size(); i += 2) texts[parameters[i]] = parameters[i + 1];
+    recording.parameters = parameters_of(texts);
     if (file_.has_attribute(particles, "failure_cause"))
         recording.failure = Failure{file_.integer_attribute(particles, "failure_step"),
                                     static_cast<int>(file_.integer_attribute(particles, "failure_grain")),

@@ -60,7 +60,8 @@ void ResultWriter::write_provenance(const Run& run) {
 ResultWriter::Tables ResultWriter::make_tables(std::size_t replica, const Recording& recording) {
     const std::string particles = particles_path(replica), contacts = contacts_path(replica);
     std::vector<std::string> parameters;
-    for (const auto& [key, value] : recording.parameters) parameters.insert(parameters.end(), {key, value});
+    for (const auto& [key, value] : recording.parameters)
+        parameters.insert(parameters.end(), {key, parameter_text(value)});
     file_.write_texts(parameters_path(replica), parameters, {2});
 
     file_.make_group(particles + "/box");
@@ -198,17 +199,17 @@ void ResultWriter::close() {
 
 void write_result_file(const std::filesystem::path& file, const Run& run,
                        const std::function<void(ResultWriter&)>& write, const StopWanted& stop_wanted) {
-    const auto look = [&] {
+    const auto check_stop = [&] {
         if (stop_wanted()) throw Interrupted();
     };
-    look();
+    check_stop();
     replace_file(file, [&](NewFile& out) {
-        ResultWriter writer(out, run, look);
+        ResultWriter writer(out, run, check_stop);
         write(writer);
         writer.close();
         out.close();
         try {
-            ResultFile(out.temporary()).expect_whole(look);
+            ResultFile(out.temporary()).expect_whole(check_stop);
         } catch (const InputError& error) {
             throw RunError(fmt::format("{}: the file read back differs from the data written: {}",
                                        file.string(), error.what()));

@@ -4,7 +4,10 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "core/input_file.h"
+#include "core/look.h"
 #include "io/results.h"
+#include "scene/packing/read_packing.h"
 
 namespace mcdem::inline io {
 namespace {
@@ -58,6 +61,12 @@ FilePacking recorded_packing(const std::filesystem::path& file, std::optional<lo
     }
     throw InputError(fmt::format("{}: must hold positions of {}, got none: run with output.positions = true",
                                  file.string(), frame ? fmt::format("frame {}", *frame) : "a frame"));
+}
+
+FilePacking read_packing_or_run(const std::filesystem::path& file, std::optional<long> frame) {
+    constexpr std::string_view hdf5 = "\x89HDF\r\n";
+    if (is_file(file) && read_beginning(file, hdf5.size()) == hdf5) return recorded_packing(file, frame);
+    return read_packing(file, frame);
 }
 
 }  // namespace mcdem::io

@@ -11,4 +11,7 @@ namespace mcdem::inline io {
 /// the run in that frame. Throws InputError.
 FilePacking recorded_packing(const std::filesystem::path& file, std::optional<long> frame);
 
+/// A packing of a run.h5 or of a file that read_packing knows.
+FilePacking read_packing_or_run(const std::filesystem::path& file, std::optional<long> frame);
+
 }  // namespace mcdem::io

@@ -21,8 +21,7 @@ public:
     std::string device_name() const { return device_.info().name; }
 
     /// For each of `changes` all replicas of the scene with these values.
-    SharedRun simulate(const std::vector<KeyValues>& changes, std::size_t scans,
-                       const WatchOptions& options) {
+    SharedRun simulate(const std::vector<KeyValues>& changes, std::size_t scans, const Callbacks& callbacks) {
         Scene all = scene_;
         all.replicas.clear();
         std::vector<Packing> packings;
@@ -36,11 +35,7 @@ public:
         }
         auto run = std::make_shared<Run>(Run{
             all.name, all.text, version_text, device_.description(), std::string(name(all.precision)), {}});
-        run->recordings = mcdem::simulate(device_, all, packings, {scans, {}, [&](double part) {
-                                                                       options.on_progress(part);
-                                                                       if (options.stop_wanted())
-                                                                           throw Interrupted();
-                                                                   }});
+        run->recordings = mcdem::simulate(device_, all, packings, callbacks, {.scans = scans});
         return run;
     }
 

@@ -19,8 +19,8 @@ void bind_programmes(pybind11::module_& module);
 void bind_path(pybind11::module_& module);
 void bind_random(pybind11::module_& module);
 
-/// Converts values of scene keys to int, float, bool or str; None for an empty text.
-pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);
+/// Values of scene keys as int, float, bool or str; None where they are not given.
+pybind11::dict parameter_dict(const Parameters& parameters);
 
 /// Invalid UTF-8, for example in paths, is decoded like os.fsdecode.
 pybind11::str python_text(const std::string& text);

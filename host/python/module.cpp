@@ -9,9 +9,7 @@
 #include "cl/kernel_cache.h"
 #include "core/errors.h"
 #include "core/version.h"
-#include "io/run_packing.h"
 #include "python/bindings.h"
-#include "scene/packing/read_packing.h"
 
 namespace mcdem::inline python {
 namespace {
@@ -52,7 +50,6 @@ PYBIND11_MODULE(_engine, module) {
     pybind11::register_exception_translator(mcdem::translate);
     mcdem::find_numpy();
     module.attr("__version__") = mcdem::version_text;
-    mcdem::read_run_packing = mcdem::recorded_packing;
     mcdem::kernel_cache_refused = [](const std::string& why) {  // perhaps without the GIL
         std::fprintf(stderr, "mcdem: %s\n", why.c_str());
     };

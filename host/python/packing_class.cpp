@@ -8,6 +8,7 @@
 #include <array>
 
 #include "cl/program.h"
+#include "core/random.h"
 #include "core/sha256.h"
 #include "core/version.h"
 #include "ensemble/make_packings.h"
@@ -16,7 +17,6 @@
 #include "python/watch.h"
 #include "scene/packing/make_packing.h"
 #include "scene/packing/neighbour_slots.h"
-#include "scene/random.h"
 
 namespace mcdem::inline python {
 namespace {
@@ -50,8 +50,15 @@ std::string digest_of(const Packing& packing) {
 /// diameters [m], and the seed of both noises and of the grains' random properties.
 using Start = std::tuple<Scene, Packing, double, double, std::uint64_t>;
 
-SharedRun simulate_starts(Device& device, const std::vector<Start>& starts, SimulateOptions options,
-                          const WatchOptions& watch) {
+bool is_on_last_way_back(const Replica& replica, const Scan& scan) {
+    return replica.programme.empty() && scan.phase == Phase::unload &&
+           scan.cycle + 1 >= replica.protocol.cycles;
+}
+
+/// `end_below`: by replica, or empty: a replica ends where on its last way back the displacement of the plate
+/// is less [m].
+SharedRun simulate_starts(Device& device, const std::vector<Start>& starts, std::size_t scans,
+                          const std::vector<double>& end_below, const Callbacks& callbacks) {
     Scene batch = std::get<0>(starts.front());
     batch.output.positions = batch.output.contacts = true;
     batch.replicas.clear();
@@ -65,13 +72,14 @@ SharedRun simulate_starts(Device& device, const std::vector<Start>& starts, Simu
         for (double& diameter : packings.back().diameter) diameter += diameter_jitter * random.normal();
         batch.slots = std::max({batch.slots, scene.slots, slots_of(batch.replicas.back(), packings.back())});
     }
-    options.on_progress = [&](double part) {
-        watch.on_progress(part);
-        if (watch.stop_wanted()) throw Interrupted();
+    const auto is_enough = [&](std::size_t r, const Recording& recording) {
+        const Scan& last = recording.scans.back();
+        return !end_below.empty() && is_on_last_way_back(batch.replicas[r], last) &&
+               recording.displacement(last) < end_below[r];
     };
     auto run = std::make_shared<Run>(Run{
         batch.name, batch.text, version_text, device.description(), std::string(name(batch.precision)), {}});
-    run->recordings = simulate(device, batch, packings, options);
+    run->recordings = simulate(device, batch, packings, callbacks, {scans, is_enough});
     return run;
 }
 
@@ -86,7 +94,7 @@ void bind_simulate(py::module_& module) {
                 all.replicas.back().packing.seed = seed;
             }
             return watched(py::none(),
-                           [&](const auto& watch) { return make_packings(all, watch.stop_wanted); });
+                           [&](const auto& callbacks) { return make_packings(all, callbacks.stop_wanted); });
         },
         py::arg("scene"), py::arg("seeds") = std::vector<std::uint64_t>{},
         "The packing of each replica, or of the first replica with each of these seeds.");
@@ -94,8 +102,8 @@ void bind_simulate(py::module_& module) {
         "simulate_starts",
         [](Device& device, const std::vector<Start>& starts, std::optional<std::size_t> scans,
            const std::vector<double>& end_below, py::object progress) {
-            return watched(std::move(progress), [&](const auto& watch) {
-                return simulate_starts(device, starts, {scans.value_or(SIZE_MAX), end_below}, watch);
+            return watched(std::move(progress), [&](const auto& callbacks) {
+                return simulate_starts(device, starts, scans.value_or(SIZE_MAX), end_below, callbacks);
             });
         },
         py::arg("device"), py::arg("starts"), py::kw_only(), py::arg("scans") = py::none(),

@@ -43,28 +43,28 @@ py::tuple programme_parameters_of(const std::vector<KeyValues>& stages, const st
     Settings settings;
     for (std::size_t n = 0; n < stages.size(); ++n)
         read_stage(stages[n], static_cast<int>(n), settings, said, problems);
-    std::map<std::string, std::string> parameters;
+    ParameterTexts parameters;
     if (problems.empty()) {
         settings.packing_file = name;  // the grains exist, so nothing is generated
         settings.replica.box = {size.first, size.second, *parse<ContainerShape>(shape)};
         settings.replica.plate = {plate_start, 0};
         for (const CrossProblem& found : programme_problems(settings, said, {}))
             problems.emplace_back(found.key, found.what);
-        if (problems.empty()) parameters = programme_parameters(settings.replica.programme);
+        if (problems.empty()) parameters = parameter_texts(programme_parameters(settings.replica.programme));
     }
     return py::make_tuple(parameters, problems);
 }
 
-std::string programme_text(const std::map<std::string, std::string>& parameters) {
+std::string programme_text(const ParameterTexts& parameters) {
     std::stringstream text;
-    if (const auto stages = programme_of(parameters); !stages.empty())
+    if (const auto stages = programme_of(parameters_of(parameters)); !stages.empty())
         text << toml::table{{"programme", programme_tables(stages)}};
     return text.str();
 }
 
-py::list places_of(const std::map<std::string, std::string>& parameters, double plate_start) {
+py::list places_of(const ParameterTexts& parameters, double plate_start) {
     py::list places;
-    for (const ScanPlace& place : scan_places(programme_of(parameters), {plate_start, 0}))
+    for (const ScanPlace& place : scan_places(programme_of(parameters_of(parameters)), {plate_start, 0}))
         places.append(py::dict(py::arg("stage") = place.stage, py::arg("leg") = place.leg,
                                py::arg("held") = place.held, py::arg("at_end") = place.at_end,
                                py::arg("by") = name(place.by), py::arg("set") = place.set,

@@ -1,12 +1,12 @@
-// mcdem._engine.Random: the random numbers of scene/random.h, so that draws are the same in both languages.
+// mcdem._engine.Random: the random numbers of core/random.h, so that draws are the same in both languages.
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
 
 #include "core/errors.h"
+#include "core/random.h"
 #include "python/bindings.h"
-#include "scene/random.h"
 
 namespace mcdem::inline python {
 namespace {

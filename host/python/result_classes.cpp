@@ -223,13 +223,13 @@ void bind_recording(py::module_& module) {
     bind_single_scans(recording);
     recording.def_property_readonly("label", [](const OneRecording& self) { return self.get().label; })
         .def_property_readonly(
-            "parameters", [](const OneRecording& self) { return typed_parameters(self.get().parameters); },
+            "parameters", [](const OneRecording& self) { return parameter_dict(self.get().parameters); },
             "Every scene key and its value for this replica; None where the key does not apply.")
         .def_property_readonly("_parameter_texts",
                                [](const OneRecording& self) {
                                    py::dict all;
-                                   for (const auto& [key, text] : self.get().parameters)
-                                       all[py::str(key)] = python_text(text);
+                                   for (const auto& [key, value] : self.get().parameters)
+                                       all[py::str(key)] = python_text(parameter_text(value));
                                    return all;
                                })
         .def_property_readonly(

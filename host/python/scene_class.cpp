@@ -3,10 +3,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <charconv>
-
 #include "core/version.h"
 #include "ensemble/parts/manifest.h"
+#include "io/run_packing.h"
 #include "python/bindings.h"
 #include "scene/programme/legs.h"
 #include "scene/read/change_scene.h"
@@ -27,13 +26,8 @@ std::vector<std::string> assignments(const py::dict& tables) {
 Scene scene_of(const py::dict& tables, const py::kwargs& more) {
     py::dict all;
     all.attr("update")(tables, **more);
-    return parse_scene(fmt::format("{}\n", fmt::join(assignments(all), "\n")), "scene");
-}
-
-template <class Number>
-bool is_all(const std::string& text, Number& number) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc{} && end == text.data() + text.size();
+    return parse_scene(fmt::format("{}\n", fmt::join(assignments(all), "\n")), "scene", {},
+                       read_packing_or_run);
 }
 
 /// Inverse of python_text.
@@ -41,14 +35,21 @@ std::string text_of(const py::handle& text) {
     return py::module_::import("os").attr("fsencode")(text).cast<std::string>();
 }
 
-py::object typed(const std::string& text) {
-    if (text.empty()) return py::none();
-    if (text == "true" || text == "false") return py::bool_(text == "true");
-    if (std::uint64_t whole = 0; is_all(text, whole)) return py::int_(whole);
-    if (std::int64_t whole = 0; is_all(text, whole)) return py::int_(whole);
-    if (double number = 0; is_all(text, number)) return py::float_(number);
-    return python_text(text);
-}
+struct ToPython {
+    py::object operator()(std::monostate) const { return py::none(); }
+    py::object operator()(const std::string& text) const { return python_text(text); }
+    py::object operator()(const std::vector<double>& values) const {
+        return python_text(parameter_text(values));
+    }
+    py::object operator()(double value) const {
+        return is_written_whole(value) ? py::object(py::int_(static_cast<std::int64_t>(value)))
+                                       : py::object(py::float_(value));
+    }
+    template <class Value>
+    py::object operator()(Value value) const {
+        return py::cast(value);
+    }
+};
 
 std::vector<std::string> labels(const Scene& scene) {
     std::vector<std::string> all;
@@ -58,7 +59,7 @@ std::vector<std::string> labels(const Scene& scene) {
 
 py::list parameters(const Scene& scene) {
     py::list all;
-    for (const Replica& replica : scene.replicas) all.append(typed_parameters(replica.parameters));
+    for (const Replica& replica : scene.replicas) all.append(parameter_dict(replica.parameters));
     return all;
 }
 
@@ -69,10 +70,9 @@ py::str python_text(const std::string& text) {
         PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
 }
 
-py::dict typed_parameters(const std::map<std::string, std::string>& parameters) {
+py::dict parameter_dict(const Parameters& parameters) {
     py::dict all;
-    for (const auto& [key, text] : parameters)
-        all[py::str(key)] = key == "packing.file" && !text.empty() ? python_text(text) : typed(text);
+    for (const auto& [key, value] : parameters) all[py::str(key)] = std::visit(ToPython{}, value);
     return all;
 }
 
@@ -138,14 +138,14 @@ void bind_scene(py::module_& module) {
         .def_static(
             "read",
             [](const std::filesystem::path& file, const py::dict& set) {
-                return read_scene(file, assignments(set));
+                return read_scene(file, assignments(set), read_packing_or_run);
             },
             py::arg("file"), py::kw_only(), py::arg("set") = py::dict(),
             "A scene file (TOML); `set` overrides keys of it.")
         .def_static(
             "parse",
             [](const py::str& text, const py::dict& set) {
-                return parse_scene(text_of(text), "scene", assignments(set));
+                return parse_scene(text_of(text), "scene", assignments(set), read_packing_or_run);
             },
             py::arg("text"), py::kw_only(), py::arg("set") = py::dict(),
             "A scene from TOML text. Packing files are relative to the working folder.")
@@ -163,7 +163,7 @@ void bind_scene(py::module_& module) {
                 return py::make_tuple(python_text(scene.name), python_text(scene.text));
             },
             [](const py::tuple& state) {
-                return parse_scene(text_of(state[1]), text_of(state[0]) + ".toml", {});
+                return parse_scene(text_of(state[1]), text_of(state[0]) + ".toml", {}, read_packing_or_run);
             }))
         .def("__repr__", [](const Scene& scene) {
             return "<mcdem.Scene " + scene.name + ": " + std::to_string(scene.replicas.size()) + " replica" +
@@ -174,7 +174,7 @@ void bind_scene(py::module_& module) {
         [](const std::filesystem::path& file, const std::vector<py::str>& overrides) {
             std::vector<std::string> texts;
             for (const py::str& one : overrides) texts.push_back(text_of(one));
-            Scene scene = read_scene(file, texts);
+            Scene scene = read_scene(file, texts, read_packing_or_run);
             const auto warnings = scene_warnings(scene);
             return py::make_tuple(std::move(scene), warnings);
         },

@@ -3,8 +3,6 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <limits>
-
 #include "core/errors.h"
 #include "core/version.h"
 #include "ensemble/make_packings.h"
@@ -57,11 +55,9 @@ SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::obje
         *run = {
             scene.name, scene.text, version_text, device.description(), std::string(name(scene.precision)),
             {}};
-        const auto packings = make_packings(scene, [&] { return watch.stop_wanted(); });
-        run->recordings = simulate(device, scene, packings, {.on_progress = [&](double part) {
-                                       watch.show_progress(part);
-                                       if (watch.stop_wanted()) throw Interrupted();
-                                   }});
+        const Callbacks callbacks{[&](double part) { watch.show_progress(part); },
+                                  [&] { return watch.stop_wanted(); }};
+        run->recordings = simulate(device, scene, make_packings(scene, callbacks.stop_wanted), callbacks);
         for (const Recording& recording : run->recordings)
             if (recording.failure) watch.warn(failure_text(recording.label, *recording.failure));
     } catch (const Interrupted&) {
@@ -111,7 +107,7 @@ SharedRun read(const std::filesystem::path& path, const std::string& what) {
 
 /// A run of one recording, with all its data.
 SharedRun read_replica(const std::filesystem::path& path, std::size_t number) {
-    return watched(py::none(), [&](const WatchOptions& options) {
+    return watched(py::none(), [&](const Callbacks& callbacks) {
         RunReader reader(path);
         auto run = std::make_shared<Run>(reader.run());
         if (number >= run->recordings.size())
@@ -119,7 +115,7 @@ SharedRun read_replica(const std::filesystem::path& path, std::size_t number) {
                                          run->recordings.size(), number));
         Recording one = std::move(run->recordings[number]);
         for (std::size_t s = 0; s < one.scans.size(); ++s) {
-            if (options.stop_wanted()) throw Interrupted();
+            if (callbacks.stop_wanted()) throw Interrupted();
             one.scans[s] = reader.read_scan(number, s);
         }
         run->recordings.assign(1, std::move(one));

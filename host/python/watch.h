@@ -7,12 +7,11 @@
 
 #include <atomic>
 #include <exception>
-#include <functional>
 #include <string>
 #include <thread>
 
 #include "core/errors.h"
-#include "core/stop.h"
+#include "ensemble/make_packings.h"
 
 namespace mcdem::inline python {
 
@@ -87,19 +86,13 @@ auto without_gil(Watch& watch, Work work) {
     return result;
 }
 
-/// What a long piece of work is told and tells.
-struct WatchOptions {
-    std::function<void(double fraction)> on_progress;
-    StopWanted stop_wanted;
-};
-
-/// The same with the progress of a Python callable; `work` gets WatchOptions.
+/// The same with the progress of a Python callable; `work` gets Callbacks.
 template <class Work>
 auto watched(pybind11::object progress, Work work) {
     Watch watch(std::move(progress));
     return without_gil(watch, [&] {
-        return work(WatchOptions{[&](double part) { watch.show_progress(part); },
-                                 [&] { return watch.stop_wanted(); }});
+        return work(
+            Callbacks{[&](double part) { watch.show_progress(part); }, [&] { return watch.stop_wanted(); }});
     });
 }
 

@@ -1,7 +1,6 @@
 // A scene as plain values in SI units. Tests can build one without a file.
 #pragma once
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -9,6 +8,8 @@
 
 #include "core/names.h"
 #include "core/packing.h"
+#include "core/parameters.h"
+#include "scene/packing/read_packing.h"
 #include "scene/programme.h"
 #include "scene/species.h"
 
@@ -33,6 +34,8 @@ struct ContactLaw {
 struct PackingFile {
     std::string path;
     std::optional<long> step = std::nullopt;  ///< timestep or frame, see read_packing
+    PackingReader reader = read_packing;
+    FilePacking read() const { return reader(path, step); }
 };
 
 /// Random packing: truncated normal diameters, grown and relaxed without weight or friction.
@@ -113,9 +116,8 @@ struct Effects {
 
 /// All inputs of one replica.
 struct Replica {
-    std::string label;  ///< distinguishes it within its run, e.g. "mc_dem #3"
-    std::map<std::string, std::string>
-        parameters;  ///< every scene key with its value for this replica, as text
+    std::string label;      ///< distinguishes it within its run, e.g. "mc_dem #3"
+    Parameters parameters;  ///< every scene key with its value for this replica
     Box box{0.165191, 0.165834};
     GrainMaterial grains;          ///< of all grains, or defaults of the species
     std::vector<Species> species;  ///< empty: one material

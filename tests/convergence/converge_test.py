@@ -149,6 +149,19 @@ class Changes(unittest.TestCase):
                 with self.assertRaisesRegex(InputError, re.escape(key)):
                     simulator.observe({key: value})
 
+    def test_of_the_packing_leave_the_first_copy(self):
+        """Copies have their own jitter; new packings begin with that of the scene."""
+        with tempfile.TemporaryDirectory() as folder:
+            simulator = engine.ConvergenceSimulator(pressed({"plate.speed": 2}), folder, replicas=2, jitter=1e-4, seed=3, device="")
+            simulator.find_grid()
+            copies = simulator.observe({})
+            self.assertTrue(simulator.draws_packings)
+            simulator.draw_packings()
+            drawn = simulator.observe({})
+        np.testing.assert_array_equal(drawn[0], copies[0])
+        for one, other in ((copies[0], copies[1]), (drawn[1], copies[1])):
+            self.assertFalse(np.array_equal(one, other, equal_nan=True))
+
 
 if __name__ == "__main__":
     unittest.main()

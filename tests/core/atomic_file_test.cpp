@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <fstream>
 #include <set>
 #include <thread>
@@ -13,6 +12,7 @@
 
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "core/test_folder.h"
 
 namespace mcdem {
 namespace {
@@ -22,12 +22,8 @@ using testing::HasSubstr;
 
 class AtomicFileTest : public testing::Test {
 protected:
-    AtomicFileTest() {
-        auto pattern = (fs::temp_directory_path() / "mcdem-test-XXXXXX").string();
-        folder_ = ::mkdtemp(pattern.data());
-    }
-    ~AtomicFileTest() override { fs::remove_all(folder_); }
-    fs::path folder_;
+    const TestFolder temporary_;
+    const fs::path folder_ = temporary_.path;
 };
 
 TEST_F(AtomicFileTest, TemporaryNamesAreUnpredictable) {
@@ -74,17 +70,16 @@ TEST_F(AtomicFileTest, OnlyTemporariesOfThisProgramAreRemoved) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3);
 }
 
-TEST_F(AtomicFileTest, AFolderIsRemovedWhenAbandonedAndKeptWhenInUse) {
+TEST_F(AtomicFileTest, OnlyAbandonedTemporariesOfThisNameAreRemoved) {
     const auto abandoned = folder_ / "lab.0123456789abcdef.tmp";
     for (const fs::path& made : {abandoned, folder_ / "lab.backup", folder_ / "other.0123456789abcdef.tmp"}) {
         fs::create_directory(made);
         std::ofstream(made / "plate.csv") << "text";
     }
     {
-        const NewFolder mine(folder_ / "lab");
-        std::ofstream(mine.path() / "plate.csv") << "text";
+        const NewFile mine(folder_ / "lab");
         remove_temporaries_of(folder_ / "lab");
-        EXPECT_TRUE(fs::exists(mine.path() / "plate.csv"));
+        EXPECT_TRUE(fs::exists(mine.temporary()));
         EXPECT_FALSE(fs::exists(abandoned));
         EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3);
     }
@@ -110,8 +105,6 @@ TEST_F(AtomicFileTest, FilesBeingWrittenAreNotRemoved) {
         NewFile file(folder_ / "file");
         file.write("whole");
         EXPECT_NO_THROW(file.put_in_place()) << k;
-        const NewFolder folder(folder_ / "folder");
-        EXPECT_TRUE(fs::exists(folder.path())) << k;
     }
     done = true;
 }

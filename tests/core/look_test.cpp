@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/errors.h"
+#include "core/test_folder.h"
 
 namespace mcdem::test {
 namespace {
@@ -17,15 +18,12 @@ using testing::HasSubstr;
 class Look : public testing::Test {
 protected:
     Look() {
-        std::string name = testing::TempDir() + "look-XXXXXX";
-        folder_ = mkdtemp(name.data());
         std::ofstream(folder_ / "file") << "four";
         fs::create_symlink("file", folder_ / "link");
         fs::create_symlink("none", folder_ / "broken");
         fs::create_symlink("loop", folder_ / "loop");
         mkfifo((folder_ / "pipe").c_str(), 0600);
     }
-    ~Look() override { fs::remove_all(folder_); }
     template <class Call>
     static std::string error_of(Call call) {
         try {
@@ -35,7 +33,8 @@ protected:
         }
         return "";
     }
-    fs::path folder_;
+    const TestFolder temporary_;
+    const fs::path folder_ = temporary_.path;
 };
 
 TEST_F(Look, TellsWhatIsAtAPath) {

@@ -14,7 +14,7 @@ std::vector<std::string> bits_of_batch(Device& device, const Scene& scene, const
     batch.replicas.clear();
     for (int r : numbers) batch.replicas.push_back(scene.replicas[r]);
     std::vector<std::string> bits;
-    for (const auto& recording : simulate(device, batch, make_packings(batch), 1000))
+    for (const auto& recording : simulate(device, batch, make_packings(batch)))
         bits.push_back(bits_of(recording));
     return bits;
 }

@@ -38,7 +38,7 @@ std::vector<Recording> simulate_some(Device& device, const Scene& scene, const s
                                      std::size_t first, std::size_t last) {
     Scene some = scene;
     some.replicas.assign(scene.replicas.begin() + first, scene.replicas.begin() + last);
-    return simulate(device, some, {packings.begin() + first, packings.begin() + last}, 1000);
+    return simulate(device, some, {packings.begin() + first, packings.begin() + last});
 }
 
 /// The wall forces equal the sums of the contact forces at the walls. (Not with adhesion, which acts across

@@ -1,12 +1,9 @@
 // A scene that runs quickly but has rearranging grains, two models and scans at rest.
 #pragma once
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
+#include "core/test_folder.h"
 #include "scene/read/read_scene.h"
 
 namespace mcdem {
@@ -33,23 +30,6 @@ relax_time = 0.02
 
 inline Scene small_scene(const std::vector<std::string>& overrides = {}) {
     return parse_scene(small_scene_text, "small.toml", overrides);
-}
-
-/// A temporary folder for one test.
-struct TestFolder {
-    TestFolder() {
-        auto pattern = (std::filesystem::temp_directory_path() / "mcdem-test-XXXXXX").string();
-        path = ::mkdtemp(pattern.data());
-    }
-    ~TestFolder() { std::filesystem::remove_all(path); }
-    TestFolder(const TestFolder&) = delete;
-    TestFolder& operator=(const TestFolder&) = delete;
-    std::filesystem::path path;
-};
-
-inline std::string bytes_of_file(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace mcdem

@@ -33,46 +33,46 @@ void expect_same_checkpoint(const Checkpoint& a, const Checkpoint& b) {
 }
 
 TEST(checkpoint, is_read_back_bit_for_bit) {
-    TemporaryFolder folder;
-    EXPECT_FALSE(read_checkpoint(folder.path()).has_value());
-    write_checkpoint(folder.path(), example(3));
-    const auto found = read_checkpoint(folder.path());
+    TestFolder folder;
+    EXPECT_FALSE(read_checkpoint(folder.path).has_value());
+    write_checkpoint(folder.path, example(3));
+    const auto found = read_checkpoint(folder.path);
     ASSERT_TRUE(found.has_value());
     expect_same_checkpoint(example(3), *found);
 }
 
 TEST(checkpoint, is_replaced_and_removed) {
-    TemporaryFolder folder;
-    write_checkpoint(folder.path(), example(3));
-    write_checkpoint(folder.path(), example(4));
-    expect_same_checkpoint(example(4), read_checkpoint(folder.path()).value());
-    remove_checkpoint(folder.path());
-    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+    TestFolder folder;
+    write_checkpoint(folder.path, example(3));
+    write_checkpoint(folder.path, example(4));
+    expect_same_checkpoint(example(4), read_checkpoint(folder.path).value());
+    remove_checkpoint(folder.path);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
 TEST(checkpoint, a_damaged_one_is_refused_with_advice) {
-    TemporaryFolder folder;
+    TestFolder folder;
     write_bytes(folder / "checkpoint.h5", "no");
-    EXPECT_THAT([&] { read_checkpoint(folder.path()); },
+    EXPECT_THAT([&] { read_checkpoint(folder.path); },
                 ThrowsMessage<InputError>(HasSubstr("start the run again in another folder")));
 }
 
-h5::Handle opened_to_change(const TemporaryFolder& folder) {
+h5::Handle opened_to_change(const TestFolder& folder) {
     return {H5Fopen((folder / "checkpoint.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose};
 }
 
 TEST(checkpoint, a_removed_field_is_detected) {
-    TemporaryFolder folder;
-    write_checkpoint(folder.path(), example(5));
+    TestFolder folder;
+    write_checkpoint(folder.path, example(5));
     ASSERT_GE(H5Ldelete(opened_to_change(folder), "/checkpoint/fields/status", H5P_DEFAULT), 0);
-    EXPECT_THAT([&] { read_checkpoint(folder.path()); }, ThrowsMessage<InputError>(HasSubstr("must have ")));
+    EXPECT_THAT([&] { read_checkpoint(folder.path); }, ThrowsMessage<InputError>(HasSubstr("must have ")));
 }
 
 TEST(checkpoint, any_flipped_bit_is_detected_or_harmless) {
-    TemporaryFolder folder;
+    TestFolder folder;
     const Checkpoint written = example(5);
-    write_checkpoint(folder.path(), written);
-    const std::string whole = read_bytes(folder / "checkpoint.h5");
+    write_checkpoint(folder.path, written);
+    const std::string whole = bytes_of_file(folder / "checkpoint.h5");
     std::mt19937_64 random(7);
     int noticed = 0;
     for (int trial = 0; trial < 200; ++trial) {
@@ -81,7 +81,7 @@ TEST(checkpoint, any_flipped_bit_is_detected_or_harmless) {
         write_bytes(folder / "checkpoint.h5", bytes);
         try {
             expect_same_checkpoint(written,
-                                   read_checkpoint(folder.path()).value());  // a bit in a gap between objects
+                                   read_checkpoint(folder.path).value());  // a bit in a gap between objects
         } catch (const InputError&) {
             ++noticed;
         }

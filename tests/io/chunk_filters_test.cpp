@@ -60,7 +60,7 @@ void write_table(const std::filesystem::path& path, bool by_library, const std::
 template <class Number>
 void expect_bytes_of_the_library(const std::vector<Number>& values, const h5::Extent& row,
                                  const std::vector<hsize_t>& appends) {
-    TemporaryFolder folder;
+    TestFolder folder;
     write_table(folder / "own.h5", false, values, row, appends);
     write_table(folder / "library.h5", true, values, row, appends);
     const auto own = stored_chunks(folder / "own.h5", "/table");

@@ -36,10 +36,10 @@ std::string read_error(const std::filesystem::path& file) {
 }
 
 TEST(damaged_files, truncation_at_every_tenth_is_detected) {
-    TemporaryFolder folder;
+    TestFolder folder;
     const auto file = folder / "run.h5";
     write_run(file, synthetic_run());
-    const std::string whole = read_bytes(file);
+    const std::string whole = bytes_of_file(file);
     for (int tenth = 0; tenth < 10; ++tenth) {
         write_bytes(file, whole.substr(0, whole.size() * static_cast<std::size_t>(tenth) / 10));
         EXPECT_THAT(read_error(file), HasSubstr("run.h5: cannot be opened as HDF5")) << tenth;
@@ -47,11 +47,11 @@ TEST(damaged_files, truncation_at_every_tenth_is_detected) {
 }
 
 TEST(damaged_files, flipped_bits_are_detected_or_harmless) {
-    TemporaryFolder folder;
+    TestFolder folder;
     const auto file = folder / "run.h5";
     const auto run = synthetic_run();
     write_run(file, run);
-    const std::string whole = read_bytes(file);
+    const std::string whole = bytes_of_file(file);
     std::mt19937_64 random(11);
     int noticed = 0;
     for (int trial = 0; trial < 400; ++trial) {
@@ -70,11 +70,11 @@ TEST(damaged_files, flipped_bits_are_detected_or_harmless) {
 }
 
 TEST(damaged_files, scrambled_ranges_are_detected) {
-    TemporaryFolder folder;
+    TestFolder folder;
     const auto file = folder / "run.h5";
     const auto run = synthetic_run();
     write_run(file, run);
-    const std::string whole = read_bytes(file);
+    const std::string whole = bytes_of_file(file);
     std::mt19937_64 random(13);
     for (int trial = 0; trial < 100; ++trial) {
         std::string bytes = whole;
@@ -91,7 +91,7 @@ TEST(damaged_files, scrambled_ranges_are_detected) {
 }
 
 TEST(damaged_files, foreign_files_are_named) {
-    TemporaryFolder folder;
+    TestFolder folder;
     write_bytes(folder / "text.h5", "frame,cycle\n0,0\n");
     EXPECT_THAT(read_error(folder / "text.h5"), HasSubstr("cannot be opened as HDF5"));
     replace_file(folder / "other.h5", [](NewFile& out) {
@@ -107,7 +107,7 @@ TEST(damaged_files, missing_tables_are_named) {
          {"/observables/replica_00000", "/contacts/replica_00000/offset", "/contacts/replica_00000/contact",
           "/particles/replica_00000/diameter", "/particles/replica_00000/position/value",
           "/parameters/replica_00000"}) {
-        TemporaryFolder folder;
+        TestFolder folder;
         write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 2}));
         {
             const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
@@ -122,7 +122,7 @@ TEST(damaged_files, missing_tables_are_named) {
 /// Writes a result file, replaces the object `path` by `values`, and returns the error of reading it.
 template <class Number>
 std::string error_with(const std::string& path, const std::vector<Number>& values) {
-    TemporaryFolder folder;
+    TestFolder folder;
     write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 2}));
     {
         const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
@@ -155,7 +155,7 @@ TEST(damaged_files, wrong_types_and_sizes_are_reported) {
 }
 
 TEST(damaged_files, invalid_sizes_are_refused) {
-    TemporaryFolder folder;
+    TestFolder folder;
     const auto error_after = [&](const std::function<void(Recording&)>& change) {
         auto run = synthetic_run({.replicas = 1, .scans = 2});
         change(run.recordings.front());
@@ -175,11 +175,11 @@ TEST(damaged_files, invalid_sizes_are_refused) {
 
 /// Changes a result file by `change` with the HDF5 library alone, and returns the error of reading it.
 std::string error_after(const std::function<void(hid_t file, const std::filesystem::path& folder)>& change) {
-    TemporaryFolder folder;
+    TestFolder folder;
     write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 2}));
     {
         const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
-        change(file, folder.path());
+        change(file, folder.path);
     }
     return read_error(folder / "run.h5");
 }
@@ -222,7 +222,7 @@ TEST(damaged_files, external_links_and_files_are_not_read) {
 }
 
 TEST(damaged_files, contacts_of_missing_grains_are_refused) {
-    TemporaryFolder folder;
+    TestFolder folder;
     auto run = synthetic_run();
     run.recordings[1].scans[0].contacts[0].partner = 27;
     write_run(folder / "run.h5", run);
@@ -234,10 +234,10 @@ long files_in(const std::filesystem::path& folder) {
 }
 
 TEST(damaged_files, killed_while_writing_leaves_the_old_file) {
-    TemporaryFolder folder;
+    TestFolder folder;
     const auto file = folder / "run.h5";
     write_run(file, synthetic_run());
-    const std::string before = read_bytes(file);
+    const std::string before = bytes_of_file(file);
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
@@ -250,34 +250,34 @@ TEST(damaged_files, killed_while_writing_leaves_the_old_file) {
     int status = 0;
     waitpid(child, &status, 0);
     ASSERT_TRUE(WIFSIGNALED(status));
-    EXPECT_EQ(files_in(folder.path()), 2);
-    EXPECT_EQ(read_bytes(file), before);
-    remove_temporaries(folder.path());
-    EXPECT_EQ(files_in(folder.path()), 1);
+    EXPECT_EQ(files_in(folder.path), 2);
+    EXPECT_EQ(bytes_of_file(file), before);
+    remove_temporaries(folder.path);
+    EXPECT_EQ(files_in(folder.path), 1);
     write_run(file, synthetic_run({.replicas = 1}));  // the left-over file is not in the way
     EXPECT_EQ(read_run(file).recordings.size(), 1u);
 }
 
 TEST(damaged_files, files_being_written_are_not_removed) {
-    TemporaryFolder folder;
+    TestFolder folder;
     {
         NewFile out(folder / "run.h5");
-        remove_temporaries(folder.path());
-        EXPECT_EQ(files_in(folder.path()), 1);
+        remove_temporaries(folder.path);
+        EXPECT_EQ(files_in(folder.path), 1);
         out.close();  // before it is moved into place
-        remove_temporaries(folder.path());
-        EXPECT_EQ(files_in(folder.path()), 1);
+        remove_temporaries(folder.path);
+        EXPECT_EQ(files_in(folder.path), 1);
         out.put_in_place();
     }
     EXPECT_TRUE(std::filesystem::exists(folder / "run.h5"));
-    EXPECT_EQ(files_in(folder.path()), 1);
+    EXPECT_EQ(files_in(folder.path), 1);
 }
 
 TEST(damaged_files, full_disk_is_an_error_and_leaves_the_old_file) {
-    TemporaryFolder folder;
+    TestFolder folder;
     const auto file = folder / "run.h5";
     write_run(file, synthetic_run({.replicas = 1}));
-    const std::string before = read_bytes(file);
+    const std::string before = bytes_of_file(file);
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
@@ -295,8 +295,8 @@ TEST(damaged_files, full_disk_is_an_error_and_leaves_the_old_file) {
     waitpid(child, &status, 0);
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 7);
-    EXPECT_EQ(read_bytes(file), before);
-    EXPECT_EQ(files_in(folder.path()), 1);
+    EXPECT_EQ(bytes_of_file(file), before);
+    EXPECT_EQ(files_in(folder.path), 1);
 }
 
 TEST(damaged_files, an_unwritable_folder_is_named) {

@@ -24,11 +24,11 @@ std::vector<std::string> cells(const std::string& line) {
 }
 
 TEST(csv, a_row_per_scan_reads_back_exactly) {
-    TemporaryFolder folder;
+    TestFolder folder;
     auto run = synthetic_run();
     run.recordings[0].label = "plain \"quoted\"";
-    write_run(run_file(folder.path()), run);
-    write_csv(folder.path());
+    write_run(run_file(folder.path), run);
+    write_csv(folder.path);
     std::ifstream in(folder / "plate.csv");
     std::string header, first, line;
     std::getline(in, header);
@@ -129,21 +129,21 @@ protected:
         write_run(folder / "run.h5", synthetic_run({.precision = "float"}));
     }
     Finished example(const std::string& script, const std::string& arguments) {
-        return run_command("MPLCONFIGDIR=" + folder.path().string() + " /usr/bin/python3 " + source +
+        return run_command("MPLCONFIGDIR=" + folder.path.string() + " /usr/bin/python3 " + source +
                            "/examples/" + script + " " + arguments);
     }
     void expect_picture(const std::string& script) {
         const auto picture = folder / (script + ".png");
-        const Finished finished = example(script, folder.path().string() + " " + picture.string());
+        const Finished finished = example(script, folder.path.string() + " " + picture.string());
         EXPECT_EQ(finished.exit_code, 0) << finished.output;
-        EXPECT_THAT(read_bytes(picture).substr(0, 8), HasSubstr("PNG"));
-        EXPECT_GT(read_bytes(picture).size(), 5000u);
+        EXPECT_THAT(bytes_of_file(picture).substr(0, 8), HasSubstr("PNG"));
+        EXPECT_GT(bytes_of_file(picture).size(), 5000u);
     }
-    TemporaryFolder folder;
+    TestFolder folder;
 };
 
 TEST_F(examples, read_run_prints_a_row_for_each_replica_and_phase) {
-    for (const auto& place : {folder.path(), folder / "run.h5"}) {
+    for (const auto& place : {folder.path, folder / "run.h5"}) {
         const Finished finished = example("read_run.py", place.string());
         EXPECT_EQ(finished.exit_code, 0) << finished.output;
         EXPECT_THAT(finished.output, HasSubstr("mc_dem, packing 1"));
@@ -154,7 +154,7 @@ TEST_F(examples, read_run_prints_a_row_for_each_replica_and_phase) {
 TEST_F(examples, scan_table_prints_means_of_each_replica_and_phase) {
     if (run_command("/usr/bin/python3 -c 'import pandas'").exit_code != 0)
         GTEST_SKIP() << "python3-pandas is not installed";
-    const Finished finished = example("scan_table.py", folder.path().string());
+    const Finished finished = example("scan_table.py", folder.path.string());
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
     EXPECT_THAT(finished.output, HasSubstr("mc_dem, packing 1"));
     EXPECT_THAT(finished.output, HasSubstr("unload"));

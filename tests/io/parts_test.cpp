@@ -11,7 +11,7 @@ namespace mcdem::test {
 namespace {
 
 /// A file that contains only these replicas of the run.
-std::filesystem::path write_part(const TemporaryFolder& place, Run run, std::size_t first, std::size_t last) {
+std::filesystem::path write_part(const TestFolder& place, Run run, std::size_t first, std::size_t last) {
     run.recordings = {run.recordings.begin() + static_cast<std::ptrdiff_t>(first),
                       run.recordings.begin() + static_cast<std::ptrdiff_t>(last)};
     const auto file = place / ("part-" + std::to_string(first) + ".h5");
@@ -29,19 +29,19 @@ protected:
                   write_part(place_, run_, 4, 5)};
         write_run(place_ / "whole.h5", run_);
     }
-    TemporaryFolder place_;
+    TestFolder place_;
     mcdem::Run run_;
     std::vector<std::filesystem::path> parts_;
 };
 
 TEST_P(PartsTest, MergedPartsHaveTheBytesOfTheWholeRun) {
     merge_parts(parts_, place_ / "merged.h5");
-    EXPECT_TRUE(read_bytes(place_ / "merged.h5") == read_bytes(place_ / "whole.h5"));
+    EXPECT_TRUE(bytes_of_file(place_ / "merged.h5") == bytes_of_file(place_ / "whole.h5"));
     expect_same(read_run(place_ / "whole.h5"), read_run(place_ / "merged.h5"));
 }
 
 TEST_P(PartsTest, ADamagedPartIsNamedAndNothingIsWritten) {
-    auto bytes = read_bytes(parts_[1]);
+    auto bytes = bytes_of_file(parts_[1]);
     for (std::size_t k = bytes.size() / 2; k < bytes.size(); k += 64) bytes[k] ^= 1;  // not only in gaps
     for (const std::string& damaged : {bytes, bytes.substr(0, bytes.size() / 2)}) {
         write_bytes(parts_[1], damaged);
@@ -59,7 +59,7 @@ TEST_P(PartsTest, ADamagedPartIsNamedAndNothingIsWritten) {
 INSTANTIATE_TEST_SUITE_P(Precisions, PartsTest, testing::Values("double", "float"));
 
 TEST(result_folder, with_parts_is_neither_a_new_folder_nor_a_run) {
-    TemporaryFolder place;
+    TestFolder place;
     std::filesystem::create_directories(parts_folder(place / "out"));
     EXPECT_THROW(ResultFolder::create(place / "out"), InputError);
     try {

@@ -33,7 +33,7 @@ void append_in_parts(ResultFolder& folder, const Run& run, const std::vector<std
 }
 
 TEST(result_folder, segments_read_the_same_as_the_merged_run_and_the_run_itself) {
-    TemporaryFolder place;
+    TestFolder place;
     auto run = synthetic_run({.replicas = 3, .scans = 8});
     run.recordings[1].scans.resize(3);  // a replica that stopped
     run.recordings[1].failure = Failure{77, 3, "lost a grain"};
@@ -53,7 +53,7 @@ TEST(result_folder, segments_read_the_same_as_the_merged_run_and_the_run_itself)
 }
 
 TEST(result_folder, merged_bytes_do_not_depend_on_the_segments) {
-    TemporaryFolder place;
+    TestFolder place;
     auto run = synthetic_run({.replicas = 3, .grains = 600, .scans = 120});  // more than one block of scans
     run.recordings[1].failure = Failure{77, 3, "lost a grain"};
     write_run(place / "whole.h5", run);
@@ -63,12 +63,12 @@ TEST(result_folder, merged_bytes_do_not_depend_on_the_segments) {
         auto folder = ResultFolder::create(place / name);
         append_in_parts(folder, run, cuts[k]);
         folder.finish();
-        EXPECT_TRUE(read_bytes(place / "whole.h5") == read_bytes(run_file(place / name))) << k;
+        EXPECT_TRUE(bytes_of_file(place / "whole.h5") == bytes_of_file(run_file(place / name))) << k;
     }
 }
 
 TEST(result_folder, one_segment_becomes_the_run) {
-    TemporaryFolder place;
+    TestFolder place;
     const auto run = synthetic_run({.precision = "float"});
     auto folder = ResultFolder::create(place / "out");
     folder.append_segment(run);
@@ -77,7 +77,7 @@ TEST(result_folder, one_segment_becomes_the_run) {
 }
 
 TEST(result_folder, resuming_deletes_segments_newer_than_the_checkpoint) {
-    TemporaryFolder place;
+    TestFolder place;
     const auto run = synthetic_run();
     {
         auto folder = ResultFolder::create(place / "out");
@@ -93,7 +93,7 @@ TEST(result_folder, resuming_deletes_segments_newer_than_the_checkpoint) {
 }
 
 TEST(result_folder, an_interrupted_finish_is_completed_by_resuming) {
-    TemporaryFolder place;
+    TestFolder place;
     const auto run = synthetic_run();
     { ResultFolder::create(place / "out").append_segment(run); }
     write_run(place / "out/run.h5", run);
@@ -104,7 +104,7 @@ TEST(result_folder, an_interrupted_finish_is_completed_by_resuming) {
 
 /// Files of others that are called like segments, and links.
 TEST(result_folder, removes_only_segments) {
-    TemporaryFolder place;
+    TestFolder place;
     { ResultFolder::create(place / "out").append_segment(synthetic_run()); }
     write_bytes(place / "out/segment-000001.h5", "my measurement");
     {
@@ -121,7 +121,7 @@ TEST(result_folder, removes_only_segments) {
 }
 
 TEST(result_folder, refuses_to_mix_runs) {
-    TemporaryFolder place;
+    TestFolder place;
     const auto run = synthetic_run();
     { ResultFolder::create(place / "out").append_segment(run); }
     EXPECT_THAT(message_of([&] { ResultFolder::create(place / "out"); }), HasSubstr("already holds a run"));
@@ -137,14 +137,14 @@ TEST(result_folder, refuses_to_mix_runs) {
 }
 
 TEST(result_folder, refuses_a_second_writer) {
-    TemporaryFolder place;
+    TestFolder place;
     const auto first = ResultFolder::create(place / "out");
     EXPECT_THAT(message_of([&] { ResultFolder::open_for_resume(place / "out"); }),
                 HasSubstr("another program"));
 }
 
 TEST(result_folder, names_a_missing_or_foreign_segment) {
-    TemporaryFolder place;
+    TestFolder place;
     const auto run = synthetic_run();
     {
         auto folder = ResultFolder::create(place / "out");
@@ -158,13 +158,13 @@ TEST(result_folder, names_a_missing_or_foreign_segment) {
 }
 
 TEST(result_folder, finishing_nothing_fails_and_leaves_the_folder) {
-    TemporaryFolder place;
+    TestFolder place;
     auto folder = ResultFolder::create(place / "out");
     EXPECT_THROW(folder.finish(), RunError);
 }
 
 TEST(result_folder, stops_between_tables_and_keeps_existing_files) {
-    TemporaryFolder place;
+    TestFolder place;
     const auto run = synthetic_run({.replicas = 2, .grains = 8});
     const auto looks_of = [](auto write) {
         int looks = 0;
@@ -198,7 +198,7 @@ TEST(result_folder, stops_between_tables_and_keeps_existing_files) {
         ASSERT_EQ(files("stopped"), two) << last;
     }
     stopped.finish();
-    EXPECT_EQ(read_bytes(place / "stopped" / "run.h5"), read_bytes(place / "whole" / "run.h5"));
+    EXPECT_EQ(bytes_of_file(place / "stopped" / "run.h5"), bytes_of_file(place / "whole" / "run.h5"));
 }
 
 }  // namespace

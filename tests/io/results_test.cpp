@@ -17,14 +17,14 @@ namespace mcdem::test {
 namespace {
 
 TEST(results, double_run_is_read_back_bit_for_bit) {
-    TemporaryFolder folder;
+    TestFolder folder;
     const auto run = synthetic_run();
     write_run(folder / "run.h5", run);
     expect_same(run, read_run(folder / "run.h5"));
 }
 
 TEST(results, float_run_keeps_observables_exactly_and_geometry_to_float) {
-    TemporaryFolder folder;
+    TestFolder folder;
     const auto run = synthetic_run({.precision = "float"});
     write_run(folder / "run.h5", run);
     const auto found = read_run(folder / "run.h5");
@@ -33,7 +33,7 @@ TEST(results, float_run_keeps_observables_exactly_and_geometry_to_float) {
 }
 
 TEST(results, containers_are_read_back) {
-    TemporaryFolder folder;
+    TestFolder folder;
     auto run = synthetic_run();
     for (const ContainerShape shape : {ContainerShape::cylinder, ContainerShape::periodic}) {
         run.recordings[0].box.shape = shape;
@@ -43,7 +43,7 @@ TEST(results, containers_are_read_back) {
 }
 
 TEST(results, cells_are_read_back_with_their_strains) {
-    TemporaryFolder folder;
+    TestFolder folder;
     auto run = synthetic_run();
     Recording& cell = run.recordings[0];
     cell.box = {0.1, 0.11, ContainerShape::cell, cell.plate_start};
@@ -71,7 +71,7 @@ TEST(results, comparison_detects_a_changed_bit) {
 }
 
 TEST(results, ragged_and_missing_parts_are_read_back) {
-    TemporaryFolder folder;
+    TestFolder folder;
     auto run = synthetic_run({.replicas = 4});
     run.recordings[0].scans.clear();
     run.recordings[0].failure = Failure{1234567890123, 17, "overlap past the limit"};
@@ -92,7 +92,7 @@ TEST(results, ragged_and_missing_parts_are_read_back) {
 }
 
 TEST(results, files_of_earlier_versions_have_no_rotations) {
-    TemporaryFolder folder;
+    TestFolder folder;
     auto run = synthetic_run();
     write_run(folder / "run.h5", run);
     {
@@ -108,13 +108,13 @@ TEST(results, files_of_earlier_versions_have_no_rotations) {
 }
 
 TEST(results, empty_run_is_read_back) {
-    TemporaryFolder folder;
+    TestFolder folder;
     write_run(folder / "run.h5", mcdem::Run{});
     expect_same(mcdem::Run{}, read_run(folder / "run.h5"));
 }
 
 TEST(results, partial_reading_leaves_out_what_was_not_requested) {
-    TemporaryFolder folder;
+    TestFolder folder;
     const auto run = synthetic_run();
     write_run(folder / "run.h5", run);
     for (ReadWhat what : {ReadWhat::observables, ReadWhat::positions, ReadWhat::contacts}) {
@@ -132,7 +132,7 @@ TEST(results, partial_reading_leaves_out_what_was_not_requested) {
 }
 
 TEST(results, reader_gives_single_scans) {
-    TemporaryFolder folder;
+    TestFolder folder;
     auto run = synthetic_run();
     run.recordings[0].scans[2].position.clear();
     write_run(folder / "run.h5", run);
@@ -146,17 +146,17 @@ TEST(results, reader_gives_single_scans) {
 }
 
 TEST(results, a_wrong_number_of_positions_is_refused_and_nothing_is_written) {
-    TemporaryFolder folder;
+    TestFolder folder;
     auto run = synthetic_run();
     run.recordings[1].scans[3].position.pop_back();
     EXPECT_THROW(write_run(folder / "run.h5", run), RunError);
-    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
 TEST(results, unknown_species_are_refused) {
     for (const std::vector<int>& wrong :
          {std::vector<int>(27, 2), std::vector<int>(27, -1), std::vector<int>(26, 0)}) {
-        TemporaryFolder folder;
+        TestFolder folder;
         auto run = synthetic_run({.replicas = 2, .grains = 27, .scans = 2});
         run.recordings[1].species = wrong;
         write_run(folder / "run.h5", run);
@@ -171,8 +171,8 @@ TEST(results, unknown_species_are_refused) {
 }
 
 TEST(results, a_missing_file_and_a_folder_without_a_run_are_reported) {
-    TemporaryFolder folder;
-    for (const auto& path : {folder / "nowhere", folder.path()}) {
+    TestFolder folder;
+    for (const auto& path : {folder / "nowhere", folder.path}) {
         try {
             read_run(path);
             ADD_FAILURE() << path;
@@ -183,15 +183,15 @@ TEST(results, a_missing_file_and_a_folder_without_a_run_are_reported) {
 }
 
 TEST(results, the_same_run_gives_the_same_bytes_later) {
-    TemporaryFolder folder;
+    TestFolder folder;
     write_run(folder / "a.h5", synthetic_run());
     std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // times in files are in seconds
     write_run(folder / "b.h5", synthetic_run());
-    EXPECT_TRUE(read_bytes(folder / "a.h5") == read_bytes(folder / "b.h5"));
+    EXPECT_TRUE(bytes_of_file(folder / "a.h5") == bytes_of_file(folder / "b.h5"));
 }
 
 TEST(results, long_texts_are_read_back) {
-    TemporaryFolder folder;
+    TestFolder folder;
     auto run = synthetic_run({.replicas = 1});
     run.scene = std::string(300000, 'x') + "end";
     run.recordings[0].parameters["packing.file"] = std::string(5000, 'y');

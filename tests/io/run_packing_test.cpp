@@ -16,12 +16,12 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 TEST(RunPacking, IsTheFirstFrameOrTheGivenOne) {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto run = synthetic_run({1, 27, 6});
     write_run(folder / "run.h5", run);
     const Recording& recording = run.recordings.front();
     EXPECT_EQ(recorded_packing(folder / "run.h5", {}).position, recording.scans[0].position);
-    EXPECT_EQ(recorded_packing(folder / "run.h5", {}).diameter, recording.diameter);
+    EXPECT_EQ(read_packing_or_run(folder / "run.h5", {}).diameter, recording.diameter);
     EXPECT_EQ(recorded_packing(folder / "run.h5", recording.scans[3].frame).position,
               recording.scans[3].position);
     const auto box = recorded_packing(folder / "run.h5", recording.scans[3].frame).box;

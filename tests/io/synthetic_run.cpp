@@ -1,12 +1,11 @@
 #include "io/synthetic_run.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
+#include <sys/wait.h>
 
 #include <cmath>
-#include <fstream>
+#include <cstdio>
 #include <limits>
-#include <sstream>
 
 namespace mcdem::test {
 namespace {
@@ -18,7 +17,7 @@ Recording synthetic_recording(const Size& size, int replica) {
     Recording recording;
     recording.label = "mc_dem, packing " + std::to_string(replica);
     recording.parameters = {
-        {"grains.youngs_modulus", "23300"}, {"contact.model", "mc_dem"}, {"seed", std::to_string(replica)}};
+        {"grains.youngs_modulus", 23300.0}, {"contact.model", "mc_dem"}, {"seed", std::to_string(replica)}};
     recording.box = {side * spacing, side * spacing};
     recording.plate_start = side * spacing;
     for (int i = 0; i < size.grains; ++i) recording.diameter.push_back(spacing * (1 + 0.01 * (i % 3)));
@@ -166,28 +165,6 @@ void expect_same(const Run& expected, const Run& found, double tolerance) {
     ASSERT_EQ(expected.recordings.size(), found.recordings.size());
     for (std::size_t r = 0; r < expected.recordings.size(); ++r)
         expect_same(expected.recordings[r], found.recordings[r], tolerance);
-}
-
-TemporaryFolder::TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "mcdem-test-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
-
-std::string read_bytes(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::stringstream bytes;
-    bytes << in.rdbuf();
-    return bytes.str();
-}
-
-void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
-    std::ofstream(file, std::ios::binary) << bytes;
 }
 
 Finished run_command(const std::string& command) {

@@ -1,9 +1,9 @@
 // An artificial run with all kinds of data, the same for the same arguments, and helpers for files.
 #pragma once
-#include <filesystem>
 #include <string>
 
 #include "core/recording.h"
+#include "core/test_folder.h"
 
 namespace mcdem::test {
 
@@ -23,21 +23,6 @@ Run part_of(const Run& run, std::size_t first, std::size_t last);
 /// Fails the test with the first difference unless both runs are equal. Positions and contacts agree within
 /// the relative `tolerance` (0: bit for bit); NaN equals NaN.
 void expect_same(const Run& expected, const Run& found, double tolerance = 0);
-
-/// A temporary folder.
-class TemporaryFolder {
-public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    const std::filesystem::path& path() const { return path_; }
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
-private:
-    std::filesystem::path path_;
-};
-
-std::string read_bytes(const std::filesystem::path& file);
-void write_bytes(const std::filesystem::path& file, const std::string& bytes);
 
 /// Output (both streams) and exit code of a shell command.
 struct Finished {

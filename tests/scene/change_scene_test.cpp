@@ -57,8 +57,8 @@ TEST(WithChanges, EqualsTheSceneThatStatesThem) {
     for (std::size_t r = 0; r < 2; ++r) {
         const Replica& replica = changed.replicas[r];
         auto expected = stated.replicas[r].parameters;
-        expected["species.2.density"] = "3";
-        expected["programme.1.speed"] = "0.05";
+        expected["species.2.density"] = 3.0;
+        expected["programme.1.speed"] = 0.05;
         EXPECT_EQ(replica.parameters, expected);
         EXPECT_EQ(replica.contact.model, ContactModel::mc_dem);
         EXPECT_EQ(replica.contact.gamma, 0.7);

@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
+#include "core/near_pairs.h"
+#include "core/random.h"
 #include "largest_overlap.h"
-#include "scene/packing/cell_pairs.h"
 #include "scene/packing/make_packing.h"
 #include "scene/packing/overlap_relaxation.h"
-#include "scene/random.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {
@@ -45,9 +45,9 @@ double height(const Packing& packing, const Box& box, double packing_fraction) {
 
 TEST(CellPairs, AreFoundInAFlatBox) {
     const std::vector<Vec3> position{{500, 500, 5e-13}, {500.0001, 500, 5e-13}, {0, 1000, 0}};
-    const CellList cells(position, {1000, 1000}, 1e-12, 1e-3);
+    const NeighbourGrid grid(position, {1000, 1000}, 1e-12, 1e-3);
     std::set<std::pair<int, int>> pairs;
-    cells.for_each_pair([&](int i, int j) { pairs.insert(std::minmax(i, j)); });
+    grid.for_each_pair([&](int i, int j) { pairs.insert(std::minmax(i, j)); });
     EXPECT_TRUE(pairs.contains({0, 1}));
     EXPECT_FALSE(pairs.contains({0, 2}));
 }

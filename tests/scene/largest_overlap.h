@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/container.h"
-#include "scene/packing/cell_pairs.h"
+#include "core/near_pairs.h"
 
 namespace mcdem {
 
@@ -18,8 +18,8 @@ inline double largest_overlap(const Packing& packing, const Box& box, double hei
                                                               packing.position[i])) /
                                           radius);
     }
-    const CellList cells(packing.position, box, height, std::ranges::max(packing.diameter));
-    cells.for_each_pair([&](int i, int j) {
+    const NeighbourGrid grid(packing.position, box, height, std::ranges::max(packing.diameter));
+    grid.for_each_pair([&](int i, int j) {
         const double reach = (packing.diameter[i] + packing.diameter[j]) / 2;
         const double distance = apart(box, packing.position[i], packing.position[j]).norm();
         most = std::max(most, 2 * (reach - distance) / std::min(packing.diameter[i], packing.diameter[j]));

@@ -50,7 +50,7 @@ protected:
                 const std::string& name = "p.dump") {
         folder_.write(name, content);
         return parse_scene(container + "[packing]\nfile = \"" + name + "\"\n",
-                           (folder_.path() / "s.toml").string());
+                           (folder_.path / "s.toml").string());
     }
     std::vector<std::string> problems(const std::string& container, const std::string& content,
                                       const std::string& name = "p.dump") {
@@ -163,7 +163,7 @@ TEST_F(PackingBox, LinesWithoutNumbersAreRefused) {
 TEST_F(PackingBox, OfTheWantedFrameCounts) {
     folder_.write("p.dump", dump("pp pp pp\n0 0.06\n0 0.06\n0 0.06") + "ITEM: TIMESTEP\n9\n" +
                                 dump("pp pp pp\n0 0.06\n0 0.06\n0 0.09").substr(17));
-    const std::string file = (folder_.path() / "s.toml").string(), packing = "[packing]\nfile = \"p.dump\"\n";
+    const std::string file = (folder_.path / "s.toml").string(), packing = "[packing]\nfile = \"p.dump\"\n";
     EXPECT_NO_THROW(parse_scene(in_cell + packing + "frame = 0\n", file));
     EXPECT_THAT(problems_of([&] { parse_scene(in_cell + packing, file); }),
                 ElementsAre(HasSubstr("container.height = 0.09")));

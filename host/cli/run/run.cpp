@@ -86,8 +86,9 @@ void warn_of_no_contact(const Run& run) {
 
 /// The plate of such a replica stands until the packing settles.
 bool waits_for_rest(const Recording& recording) {
-    return value_of(recording.parameters, "protocol.stop_at_scans") == "true" &&
-           value_of(recording.parameters, "protocol.pause") == "0" && !has_programme(recording.parameters);
+    return find_parameter(recording.parameters, "protocol.stop_at_scans") == Parameter(true) &&
+           find_parameter(recording.parameters, "protocol.pause") == Parameter(0.0) &&
+           !has_programme(recording.parameters);
 }
 
 void warn_of_unsettled(const Run& run) {

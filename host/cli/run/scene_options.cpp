@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include "cli/shell/messages.h"
+#include "io/run_packing.h"
 #include "scene/read/read_scene.h"
 #include "scene/read/scene_warnings.h"
 
 namespace mcdem::inline cli {
 
 Scene SceneOptions::read() const {
-    Scene scene = read_scene(file, overrides);
+    Scene scene = read_scene(file, overrides, read_packing_or_run);
     for (const std::string& warning : scene_warnings(scene)) spdlog::warn("{}", warning);
     return scene;
 }

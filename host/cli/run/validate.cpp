@@ -8,7 +8,6 @@
 #include "cli/shell/standard_streams.h"
 #include "core/errors.h"
 #include "scene/packing/packing_state.h"
-#include "scene/packing/read_packing.h"
 #include "scene/programme/legs.h"
 #include "sim/batch_limits.h"
 
@@ -40,7 +39,7 @@ void print_packings(const Scene& scene) {
     for (const Replica& replica : scene.replicas) {
         const auto* file = std::get_if<PackingFile>(&replica.packing.source);
         if (!file || !printed.emplace(file->path, file->step).second) continue;
-        const Packing packing = read_packing(file->path, file->step);
+        const Packing packing = file->read();
         const PackingState state =
             packing_state(packing, replica.box, plate_face(replica, replica.plate.start));
         print_out("{}: {} grains, Z = {:.2f}, deepest overlap {:.3g} mm ({:.2g} % of a diameter)\n",

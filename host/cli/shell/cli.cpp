@@ -15,8 +15,6 @@
 #include "core/errors.h"
 #include "core/stack.h"
 #include "core/version.h"
-#include "io/run_packing.h"
-#include "scene/packing/read_packing.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -149,7 +147,6 @@ int run_cli(int argc, const char* const* argv) {
         hint_at_crashes();
         opencl_started = hint_at_crashes;
         kernel_cache_refused = [](const std::string& why) { spdlog::warn("{}", why); };
-        read_run_packing = recorded_packing;
         return exit_code_of_output(command_line(argc, argv));
     } catch (const std::exception& error) {
         return report_error(error);

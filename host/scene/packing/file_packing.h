@@ -1,6 +1,8 @@
 // A packing with all that its file says of it.
 #pragma once
 #include <array>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,5 +27,9 @@ struct FilePacking : Packing {
     std::optional<StatedBox> box = {};  ///< if the file has lines about it
     std::vector<double> density = {};   ///< of each grain [kg/m3]; empty if the file does not say
 };
+
+/// Reads the packing of a file; `frame` as in read_packing. Throws InputError.
+using PackingReader =
+    std::function<FilePacking(const std::filesystem::path& file, std::optional<long> frame)>;
 
 }  // namespace mcdem::scene

@@ -6,9 +6,9 @@
 #include <tuple>
 
 #include "core/container.h"
+#include "core/random.h"
 #include "scene/packing/overlap_relaxation.h"
 #include "scene/packing/sizes.h"
-#include "scene/random.h"
 
 namespace mcdem::inline scene {
 namespace {

@@ -9,10 +9,9 @@
 #include "core/container.h"
 #include "core/errors.h"
 #include "core/median.h"
+#include "core/random.h"
 #include "scene/packing/generate_packing.h"
-#include "scene/packing/read_packing.h"
 #include "scene/programme/cell_path.h"
-#include "scene/random.h"
 #include "scene/read/resolve_species.h"
 
 namespace mcdem::inline scene {
@@ -131,7 +130,7 @@ std::vector<PackingSize> packing_sizes(const std::vector<Replica>& replicas) {
         }
         const auto& file = std::get<PackingFile>(replica.packing.source);
         const auto [known, is_new] = files.try_emplace({file.path, file.step});
-        if (is_new) known->second = size_of(read_packing(file.path, file.step));
+        if (is_new) known->second = size_of(file.read());
         sizes.push_back(known->second);
     }
     return sizes;
@@ -142,7 +141,7 @@ Packing make_packing(const Replica& replica) {
     Packing packing;
     std::string source = "generated packing";
     if (const auto* file = std::get_if<PackingFile>(&from.source)) {
-        packing = read_packing(file->path, file->step);
+        packing = file->read();
         source = file->path;
         assign_species(packing, replica, source);
     } else {

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/container.h"
-#include "scene/packing/cell_pairs.h"
+#include "core/near_pairs.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -155,8 +155,8 @@ void OverlapRelaxation::find_pairs() {
     pairs_.clear();
     std::vector<Vec3> inside;
     for (const Vec3& point : position_) inside.push_back(into_cell(box_, point));
-    const CellList cells(inside, box_, height_, 2 * std::ranges::max(radius_) + margin_);
-    cells.for_each_pair([&](int i, int j) {
+    const NeighbourGrid grid(inside, box_, height_, 2 * std::ranges::max(radius_) + margin_);
+    grid.for_each_pair([&](int i, int j) {
         const double reach = radius_[i] + radius_[j] + margin_;
         if (core::apart(box_, position_[i], position_[j]).squaredNorm() < reach * reach)
             pairs_.push_back({i, j});

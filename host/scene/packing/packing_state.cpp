@@ -5,7 +5,7 @@
 
 #include "core/law_range.h"
 #include "core/median.h"
-#include "scene/packing/cell_pairs.h"
+#include "core/near_pairs.h"
 
 namespace mcdem::inline scene {
 
@@ -28,7 +28,7 @@ PackingState packing_state(const Packing& packing, const Box& box, const PlateFa
         if (!is_cell(box)) add(diameter / 2 - (plate.foot(at) - at).norm(), diameter, 1);
     }
     const double widest = packing.size() == 0 ? 0 : *std::ranges::max_element(packing.diameter);
-    CellList(packing.position, box, plate.z, widest).for_each_pair([&](int i, int j) {
+    NeighbourGrid(packing.position, box, plate.z, widest).for_each_pair([&](int i, int j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
         const double first = packing.diameter[a], second = packing.diameter[b];
         add((first + second) / 2 - apart(box, packing.position[a], packing.position[b]).norm(),
@@ -44,7 +44,7 @@ DeepestPair deepest_pair(const Packing& packing, const Box& box, double height) 
     std::vector<Vec3> inside;
     for (const Vec3& position : packing.position) inside.push_back(into_cell(box, position));
     const double reach = std::min(4 * median(packing.diameter), *std::ranges::max_element(packing.diameter));
-    CellList(inside, box, height, reach).for_each_pair([&](int i, int j) {
+    NeighbourGrid(inside, box, height, reach).for_each_pair([&](int i, int j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
         const double one = packing.diameter[a] / 2, other = packing.diameter[b] / 2;
         const double overlap =
@@ -67,7 +67,7 @@ MostNeighbours most_neighbours(const Packing& packing, const Box& box, double he
             if (has_wall(box, static_cast<Wall>(wall)))
                 count[i] += wall_distance(box, static_cast<Wall>(wall), height, inside[i]) <
                             packing.diameter[i] / 2 + gap;
-    CellList(inside, box, height, reach).for_each_pair([&](int i, int j) {
+    NeighbourGrid(inside, box, height, reach).for_each_pair([&](int i, int j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
         const double within = (packing.diameter[a] + packing.diameter[b]) / 2 + gap;
         if (apart(box, inside[a], inside[b]).squaredNorm() >= within * within) return;

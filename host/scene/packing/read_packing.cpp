@@ -350,10 +350,8 @@ FilePacking read_packing(const std::filesystem::path& file, std::optional<long> 
         throw InputError(fmt::format("{}: must be a packing of at most 2 GiB, got more", file.string()));
     const std::string text = read_file(file), source = file.string();
     const std::string_view beginning = std::string_view(text).substr(0, 1 << 16);
-    if (beginning.starts_with("\x89HDF\r\n")) {
-        if (!read_run_packing) throw InputError(source + ": run.h5 cannot be read as a packing here");
-        return read_run_packing(file, frame);
-    }
+    if (beginning.starts_with("\x89HDF\r\n"))
+        throw InputError(source + ": run.h5 cannot be read as a packing here");
     if (beginning.starts_with("\x1f\x8b"))
         throw InputError(fmt::format("{}: must not be packed, got a file of gzip: unpack it", source));
     if (file.extension() == ".csv") return read_csv_packing(text, source, frame);

@@ -14,13 +14,9 @@ inline constexpr long largest_packing = 10'000'000;
 
 /// The format is determined by the extension `.csv`, otherwise by the content: a text dump of
 /// LIGGGHTS/LAMMPS, Yade's text (`x y z r`), or a LIGGGHTS/LAMMPS data file. `frame`: timestep of a dump
-/// (default: the last), or frame of an experiment's grains.csv or of a run (default: the first). Throws
-/// InputError.
+/// (default: the last), or frame of an experiment's grains.csv (default: the first). A run.h5 is read by
+/// read_packing_or_run (io/run_packing.h). Throws InputError.
 FilePacking read_packing(const std::filesystem::path& file, std::optional<long> frame = {});
-
-/// Reads a run.h5. The scene layer does not use HDF5; programs set this to the reader of io.
-using RunPackingReader = FilePacking (*)(const std::filesystem::path& file, std::optional<long> frame);
-inline RunPackingReader read_run_packing = nullptr;
 
 /// LIGGGHTS/LAMMPS data file, atom style sphere or granular: lines `id type diameter density x y z` in its
 /// `Atoms` section, in metres. Grains are numbered from 0 in the order of the file's ids. Velocities are

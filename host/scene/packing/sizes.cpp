@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "core/input_file.h"
+#include "core/random.h"
 #include "scene/packing/table.h"
-#include "scene/random.h"
 
 namespace mcdem::inline scene {
 

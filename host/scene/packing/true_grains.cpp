@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/errors.h"
-#include "scene/random.h"
+#include "core/random.h"
 
 namespace mcdem::inline scene {
 

@@ -3,23 +3,39 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
-#include "core/parameters.h"
 #include "scene/read/list_tables.h"
 #include "scene/read/toml_text.h"
 
 namespace mcdem::inline scene {
 namespace {
 
-/// Parses a TOML value; other text is a word.
-toml::table value_of_text(const std::string& text) {
-    return parse_value(text).value_or(toml::table{{"value", without_quotes(text)}});
-}
+/// Appends the value to a list of TOML, if it is given.
+struct ToToml {
+    toml::array& list;
+    void operator()(std::monostate) const {}
+    void operator()(double value) const {
+        if (is_written_whole(value))
+            list.push_back(static_cast<std::int64_t>(value));
+        else
+            list.push_back(value);
+    }
+    void operator()(std::uint64_t value) const { list.push_back(static_cast<std::int64_t>(value)); }
+    void operator()(const std::vector<double>& values) const {
+        toml::array numbers;
+        for (const double value : values) ToToml{numbers}(value);
+        list.push_back(numbers);
+    }
+    template <class Value>
+    void operator()(const Value& value) const {
+        list.push_back(value);
+    }
+};
 
-/// Assigns a value from the text that the table of keys has written.
-void assign_text(const Key& key, const std::string& text, Settings& settings) {
-    if (text.empty()) return;  // not given
-    const toml::table table = value_of_text(text);
-    assign(key, *table.get("value"), settings);
+/// The value, or an empty list if it is not given.
+toml::array toml_of(const Parameter& parameter) {
+    toml::array list;
+    std::visit(ToToml{list}, parameter);
+    return list;
 }
 
 /// Checks stages from a file that may have been written by others.
@@ -39,22 +55,24 @@ void expect_legs(const std::vector<Stage>& programme) {
 
 }  // namespace
 
-std::map<std::string, std::string> programme_parameters(const std::vector<Stage>& programme) {
+Parameters programme_parameters(const std::vector<Stage>& programme) {
     Settings settings;
     settings.replica.programme = programme;
-    std::map<std::string, std::string> all;
+    Parameters all;
     for (std::size_t n = 0; n < programme.size(); ++n)
         for (const Key& key : stage_keys(static_cast<int>(n)))
-            all[std::string(key.name)] = value_text(key, settings);
+            all[std::string(key.name)] = value_of(key, settings);
     return all;
 }
 
-std::vector<Stage> programme_of(const std::map<std::string, std::string>& parameters) {
+std::vector<Stage> programme_of(const Parameters& parameters) {
     Settings settings;
     for (int n = 0; n < max_stages && parameters.contains(std::string(stage_keys(n).front().name)); ++n) {
         settings.replica.programme.emplace_back();
-        for (const Key& key : stage_keys(n))
-            assign_text(key, value_of(parameters, std::string(key.name)), settings);
+        for (const Key& key : stage_keys(n)) {
+            const toml::array value = toml_of(find_parameter(parameters, std::string(key.name)));
+            if (!value.empty()) assign(key, value.front(), settings);
+        }
     }
     expect_legs(settings.replica.programme);
     return settings.replica.programme;
@@ -68,12 +86,10 @@ toml::array programme_tables(const std::vector<Stage>& programme) {
         defaults.replica.programme = {{}};
         toml::table table;
         for (const Key& key : stage_keys(0)) {
-            const std::string text = value_text(key, settings);
-            if (text == value_text(key, defaults) || text.empty()) continue;
-            const toml::table value = value_of_text(text);
-            value.get("value")->visit([&](const auto& concrete) {
-                table.insert(key.name.substr(key.name.rfind('.') + 1), concrete);
-            });
+            const Parameter parameter = value_of(key, settings);
+            if (parameter == value_of(key, defaults)) continue;
+            const toml::array value = toml_of(parameter);
+            value.for_each([&](const auto& concrete) { table.insert(last_part(key.name), concrete); });
         }
         tables.push_back(table);
     }

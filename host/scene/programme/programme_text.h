@@ -2,20 +2,19 @@
 #pragma once
 #include <toml++/toml.h>
 
-#include <map>
-#include <string>
 #include <vector>
 
+#include "core/parameters.h"
 #include "scene/programme/legs.h"
 
 namespace mcdem::inline scene {
 
 /// "programme.1.stage" and the other keys of all stages with their values.
-std::map<std::string, std::string> programme_parameters(const std::vector<Stage>& programme);
+Parameters programme_parameters(const std::vector<Stage>& programme);
 
 /// The stages in a recording's parameters; none if it followed strokes. Throws InputError if the parameters
 /// cannot come from a scene.
-std::vector<Stage> programme_of(const std::map<std::string, std::string>& parameters);
+std::vector<Stage> programme_of(const Parameters& parameters);
 
 /// [[programme]] tables with the values of each stage that differ from the defaults.
 toml::array programme_tables(const std::vector<Stage>& programme);

@@ -112,7 +112,7 @@ Scene with_changes(const Scene& scene, const std::map<std::string, std::string>&
             } else if (const auto problem = assign(*key, *value->get("value"), settings)) {
                 report(fmt::format("{} {}", name, *problem));
             } else {
-                settings.replica.parameters[name] = value_text(*key, settings);
+                settings.replica.parameters[name] = value_of(*key, settings);
             }
         }
         for (const CrossProblem& problem : cross_problems(settings, {}))

@@ -3,11 +3,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "scene/read/list_tables.h"
+#include "scene/read/toml_text.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -41,19 +43,59 @@ struct Describe {
     }
 };
 
-std::string text_of(const std::string& value) { return value; }
-std::string text_of(bool value) { return value ? "true" : "false"; }
-std::string text_of(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
-std::string text_of(const std::vector<double>& values) {
-    return values.empty() ? "" : fmt::format("[{}]", fmt::join(values, ", "));
-}
-template <class Value>
-std::string text_of(Value value) {
-    if constexpr (std::is_enum_v<Value>)
-        return std::string(name(value));
-    else
-        return fmt::format("{}", value);
-}
+/// The value of a member as a parameter.
+struct ValueOf {
+    Settings& settings;
+    Parameter operator()(MemberOf<double> get) const {
+        return std::isnan(get(settings)) ? Parameter() : Parameter(get(settings));
+    }
+    Parameter operator()(MemberOf<int> get) const { return std::int64_t{get(settings)}; }
+    Parameter operator()(MemberOf<std::uint64_t> get) const { return get(settings); }
+    Parameter operator()(MemberOf<bool> get) const { return get(settings); }
+    Parameter operator()(MemberOf<std::string> get) const {
+        return get(settings).empty() ? Parameter() : Parameter(get(settings));
+    }
+    Parameter operator()(MemberOf<std::vector<double>> get) const {
+        return get(settings).empty() ? Parameter() : Parameter(get(settings));
+    }
+    template <class Enum>
+    Parameter operator()(MemberOf<Enum> get) const {
+        return std::string(name(get(settings)));
+    }
+};
+
+/// The parameter that a text means for a member of this type.
+struct FromText {
+    const std::string& text;
+    Parameter operator()(MemberOf<double>) const { return number<double>(); }
+    Parameter operator()(MemberOf<int>) const { return number<std::int64_t>(); }
+    Parameter operator()(MemberOf<std::uint64_t>) const { return number<std::uint64_t>(); }
+    Parameter operator()(MemberOf<bool>) const {
+        return text == "true" || text == "false" ? Parameter(text == "true") : Parameter(text);
+    }
+    Parameter operator()(MemberOf<std::vector<double>>) const {
+        const auto table = parse_value(text);
+        const toml::array* list = table ? table->get("value")->as_array() : nullptr;
+        if (!list) return text;
+        std::vector<double> numbers;
+        for (const toml::node& element : *list)
+            numbers.push_back(element.value<double>().value_or(not_given));
+        return numbers;
+    }
+    template <class Word>
+    Parameter operator()(MemberOf<Word>) const {
+        return without_quotes(text);
+    }
+
+private:
+    template <class Number>
+    Parameter number() const {
+        Number value{};
+        const char* const last = text.data() + text.size();
+        const auto [end, error] = std::from_chars(text.data(), last, value);
+        return error == std::errc{} && end == last ? Parameter(value) : Parameter(text);
+    }
+};
 
 /// Levenshtein distance: number of insertions, deletions and replacements between two words.
 std::size_t distance(std::string_view a, std::string_view b) {
@@ -80,10 +122,22 @@ std::string description(const Key& key) {
     return text;
 }
 
-std::string value_text(const Key& key, const Settings& settings) {
+Parameter value_of(const Key& key, const Settings& settings) {
     // Members are reached through a non-const reference; nothing is modified here.
-    auto& at = const_cast<Settings&>(settings);
-    return std::visit([&](auto get) { return text_of(get(at)); }, key.member);
+    return std::visit(ValueOf{const_cast<Settings&>(settings)}, key.member);
+}
+
+std::string value_text(const Key& key, const Settings& settings) {
+    return parameter_text(value_of(key, settings));
+}
+
+Parameters parameters_of(const ParameterTexts& texts) {
+    Parameters all;
+    for (const auto& [name, text] : texts) {
+        const Key* key = find_key(name);
+        all[name] = text.empty() ? Parameter() : key ? std::visit(FromText{text}, key->member) : text;
+    }
+    return all;
 }
 
 std::string suggestion(std::string_view unknown) {

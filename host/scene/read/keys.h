@@ -19,11 +19,19 @@ struct Settings {
     GeneratedPacking generated;
     std::string packing_file;  ///< empty: generated
     int packing_frame = -1;    ///< timestep of a dump; -1: the last one
+    PackingReader packing_reader = read_packing;
     int copies = 1;
     double cylinder_radius = 0.0827;  ///< of a cylinder [m]; sets the sizes of its box
     double cell_height =
         not_given;  ///< of a cell [m]; sets the height of its box and plate.start, which is otherwise unused
 };
+
+/// The file of the packing; there must be one.
+inline PackingFile packing_file_of(const Settings& settings) {
+    const int frame = settings.packing_frame;
+    return {settings.packing_file, frame < 0 ? std::nullopt : std::optional<long>(frame),
+            settings.packing_reader};
+}
 
 /// Allowed range of a number.
 struct Range {
@@ -100,7 +108,10 @@ std::string_view last_part(std::string_view name);
 /// Allowed values of the key: "a number > 0 and <= 10 [m]", "one of saturated, mindlin".
 std::string description(const Key& key);
 
-/// The key's value as text; numbers are exact when read back.
+Parameter value_of(const Key& key, const Settings& settings);
 std::string value_text(const Key& key, const Settings& settings);
+
+/// Parameters from their text in a file. What is no value of its key, or has an unknown key, stays text.
+Parameters parameters_of(const ParameterTexts& texts);
 
 }  // namespace mcdem::scene

@@ -18,8 +18,10 @@ namespace {
 /// Processes a document once and collects settings, variations and all problems.
 class SceneReader {
 public:
-    SceneReader(std::string_view text, const std::string& source, const std::vector<std::string>& overrides)
+    SceneReader(std::string_view text, const std::string& source, const std::vector<std::string>& overrides,
+                const PackingReader& packings)
         : document_(text, source, overrides, problems_) {
+        settings_.packing_reader = packings;
         settings_.run.name = std::filesystem::path(source).stem().string();
     }
 
@@ -252,11 +254,12 @@ private:
 }  // namespace
 
 Scene parse_scene(std::string_view toml_text, std::string source_name,
-                  const std::vector<std::string>& overrides) {
-    return SceneReader(toml_text, source_name, overrides).read();
+                  const std::vector<std::string>& overrides, const PackingReader& packings) {
+    return SceneReader(toml_text, source_name, overrides, packings).read();
 }
 
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                 const PackingReader& packings) {
     if (!is_file(file))
         throw InputError(fmt::format("{}: must be a scene, got {}", file.string(),
                                      is_there(file) ? "something that is not a file" : "no such file"));
@@ -264,7 +267,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
     if (size_of_file(file) > largest_file)
         throw InputError(
             fmt::format("{}: a scene must be at most {} bytes long", file.string(), largest_file));
-    return parse_scene(read_file(file), file.string(), overrides);
+    return parse_scene(read_file(file), file.string(), overrides, packings);
 }
 
 }  // namespace mcdem::scene

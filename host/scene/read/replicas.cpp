@@ -29,25 +29,20 @@ std::string label_part(const Key& key, const Settings& settings, const std::vect
     return fmt::format("{}={}", alike > 1 ? key.name : last_part(key.name), value);
 }
 
-PackingFile packing_file(const Settings& settings) {
-    if (settings.packing_frame < 0) return {settings.packing_file};
-    return {settings.packing_file, settings.packing_frame};
-}
-
-std::map<std::string, std::string> parameters(const Settings& settings) {
-    std::map<std::string, std::string> all;
+Parameters parameters(const Settings& settings) {
+    Parameters all;
     for (const Key& key : keys()) {
         const bool applies = (settings.packing_file.empty() || !is_generator_key(key.name)) &&
                              is_key_of(settings.replica.box.shape, key.name);
-        all[std::string(key.name)] = applies ? value_text(key, settings) : "";
+        all[std::string(key.name)] = applies ? value_of(key, settings) : Parameter();
     }
     if (!settings.replica.species.empty())
         for (const char* key : {"mean", "sd", "min", "max"})
-            all[fmt::format("packing.diameter_{}", key)].clear();
+            all[fmt::format("packing.diameter_{}", key)] = {};
     for (const ListTable& table : list_tables())
         for (std::size_t n = 0; n < table.size(settings.replica); ++n)
             for (const Key& key : table.keys(static_cast<int>(n)))
-                all[std::string(key.name)] = value_text(key, settings);
+                all[std::string(key.name)] = value_of(key, settings);
     return all;
 }
 
@@ -107,7 +102,7 @@ std::vector<Replica> make_replicas(const std::vector<Combination>& combinations)
             if (settings.packing_file.empty())
                 replica.packing.source = settings.generated;
             else
-                replica.packing.source = packing_file(settings);
+                replica.packing.source = packing_file_of(settings);
             replicas.push_back(std::move(replica));
         }
     }

@@ -8,9 +8,9 @@
 #include <numeric>
 
 #include "core/errors.h"
+#include "core/random.h"
 #include "scene/packing/packing_fields.h"
 #include "scene/packing/sizes.h"
-#include "scene/random.h"
 
 namespace mcdem::inline scene {
 namespace {

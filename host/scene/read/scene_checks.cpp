@@ -10,7 +10,6 @@
 #include "scene/packing/generate_packing.h"
 #include "scene/packing/make_packing.h"
 #include "scene/packing/neighbour_slots.h"
-#include "scene/packing/read_packing.h"
 #include "scene/packing/stated_box.h"
 #include "scene/programme/cell_path.h"
 #include "scene/read/resolve_species.h"
@@ -328,8 +327,7 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
     CheckedFile& file = place->second;
     if (is_new) {
         try {
-            const int step = settings.packing_frame;
-            file.packing = read_packing(settings.packing_file, step < 0 ? std::optional<long>() : step);
+            file.packing = packing_file_of(settings).read();
             file.count = file.packing.size();
             file.smallest = *std::ranges::min_element(file.packing.diameter);
         } catch (const InputError& error) {

@@ -9,7 +9,6 @@
 
 #include "scene/packing/neighbour_slots.h"
 #include "scene/packing/packing_state.h"
-#include "scene/packing/read_packing.h"
 #include "scene/packing/stated_box.h"
 
 namespace mcdem::inline scene {
@@ -38,7 +37,7 @@ struct ReadFile {
 };
 
 ReadFile read_file_of(const PackingFile& file, const Replica& replica) {
-    ReadFile read{read_packing(file.path, file.step)};
+    ReadFile read{file.read()};
     const PlateFace plate = plate_face(replica, replica.plate.start);
     read.overlap = packing_state(read.packing, replica.box, plate).relative_overlap;
     return read;

@@ -1,4 +1,4 @@
-"""Pairs of neighbouring grains, found with a cell list (host/scene/packing/cell_pairs.h)."""
+"""Pairs of neighbouring grains, found with a cell list (host/core/near_pairs.h)."""
 import math
 from collections.abc import Iterator
 

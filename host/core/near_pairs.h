@@ -1,4 +1,4 @@
-// Pairs of neighbouring spheres in a container, found with a cell list.
+// Pairs of neighbouring spheres in a container, found with a grid.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -7,14 +7,14 @@
 
 #include "core/container.h"
 
-namespace mcdem::inline scene {
+namespace mcdem::inline core {
 
-/// Grains sorted by the cubic cell that contains their centre.
-class CellList {
+/// Grains sorted by the cubic grid cell that contains their centre.
+class NeighbourGrid {
 public:
-    /// `edge`: maximum distance of a pair; cells are larger if they would far outnumber the grains. The list
-    /// extends up to `height`. In a periodic cell, positions must be inside it.
-    CellList(const std::vector<Vec3>& position, const Box& box, double height, double edge)
+    /// `edge`: maximum distance of a pair; grid cells are larger if they would far outnumber the grains. The
+    /// list extends up to `height`. In a periodic cell, positions must be inside it.
+    NeighbourGrid(const std::vector<Vec3>& position, const Box& box, double height, double edge)
         : repeats_{is_periodic(box), is_periodic(box), is_cell(box)} {
         const double size[]{box.size_x, box.size_y, height};
         const double volume = size[0] * size[1] * size[2];
@@ -41,14 +41,14 @@ public:
     }
 
 private:
-    using Cell = std::array<int, 3>;
+    using GridCell = std::array<int, 3>;
 
-    std::size_t index(const Cell& cell) const {
+    std::size_t index(const GridCell& cell) const {
         return (static_cast<std::size_t>(cell[2]) * cells_[1] + cell[1]) * cells_[0] + cell[0];
     }
 
-    Cell cell_of(const Vec3& position) const {
-        Cell cell;
+    GridCell cell_of(const Vec3& position) const {
+        GridCell cell;
         for (int axis = 0; axis < 3; ++axis)
             cell[axis] = static_cast<int>(std::clamp(position[axis] / edge_[axis], 0.0, cells_[axis] - 1.0));
         return cell;
@@ -65,7 +65,7 @@ private:
     }
 
     /// False beyond a non-periodic end, or for the same layer again.
-    bool wrap(Cell& cell) const {
+    bool wrap(GridCell& cell) const {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const bool past = cell[axis] < 0 || cell[axis] >= cells_[axis];
             if (past && (!repeats_[axis] || cells_[axis] == 1)) return false;
@@ -75,7 +75,7 @@ private:
     }
 
     template <class Visit>
-    void visit_cell(const Cell& cell, const Visit& visit) const {
+    void visit_cell(const GridCell& cell, const Visit& visit) const {
         // Half of the 26 neighbours, so that each pair of cells is visited once.
         static constexpr int half[13][3] = {{1, 0, 0},  {-1, 1, 0}, {0, 1, 0},  {1, 1, 0}, {-1, -1, 1},
                                             {0, -1, 1}, {1, -1, 1}, {-1, 0, 1}, {0, 0, 1}, {1, 0, 1},
@@ -84,7 +84,7 @@ private:
         for (int a = first_[here]; a < first_[here + 1]; ++a)
             for (int b = a + 1; b < first_[here + 1]; ++b) visit(sorted_[a], sorted_[b]);
         for (const auto& step : half) {
-            Cell other{cell[0] + step[0], cell[1] + step[1], cell[2] + step[2]};
+            GridCell other{cell[0] + step[0], cell[1] + step[1], cell[2] + step[2]};
             if (!wrap(other)) continue;
             const std::size_t there = index(other);
             for (int a = first_[here]; a < first_[here + 1]; ++a)
@@ -98,4 +98,4 @@ private:
     std::vector<int> first_, sorted_;
 };
 
-}  // namespace mcdem::scene
+}  // namespace mcdem::core

@@ -8,16 +8,14 @@
 #include <utility>
 #include <vector>
 
-namespace mcdem::inline scene {
+namespace mcdem::inline core {
 
 /// Purpose of a stream of random numbers; streams with the same seed are independent.
 enum class Stream : std::uint64_t {
     diameters = 1,
     positions = 2,
     jitter = 3,
-    measured_diameters = 4,
-    measured_positions = 5,
-    measured_forces = 6,
+    // 4 to 6: noise of measurements (host/python/mcdem/experiment/keyed_normal.py)
     moduli = 7,
     true_diameters = 8,
     species = 9,
@@ -81,22 +79,6 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// Standard normal numbers that depend on a key and not on the order of calls: what two packings have in
-/// common gets the same numbers, whatever else they contain.
-class KeyedNormal {
-public:
-    KeyedNormal(std::uint64_t seed, Stream stream)
-        : base_(scattered(scattered(seed) + static_cast<std::uint64_t>(stream))) {}
-
-    double operator()(std::uint64_t first, std::uint64_t second) const {
-        const std::uint64_t bits = scattered(scattered(base_ + first) + second);
-        return normal_of(unit_interval(bits), unit_interval(scattered(bits)));
-    }
-
-private:
-    std::uint64_t base_;
-};
-
 /// Normal distribution truncated to [low, high], by its quantiles.
 struct TruncatedNormal {
     double mean, sd;  ///< before truncation
@@ -116,4 +98,4 @@ struct TruncatedNormal {
     }
 };
 
-}  // namespace mcdem::scene
+}  // namespace mcdem::core
