@@ -7,7 +7,7 @@
 #include "cli/cli_test.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"
-#include "cli/shell/subprocess.h"
+#include "cli/shell/shell_words.h"
 #include "core/errors.h"
 #include "io/result_folder.h"
 

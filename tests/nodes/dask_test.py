@@ -140,7 +140,7 @@ def an_interrupted_merge_is_called_interrupted(place):
     program.write_text("#!/bin/sh\ncase \"$*\" in *--merge*) exit 130;; *--alike*) echo 0;; esac\n")
     program.chmod(0o755)
     environment = {"PYTHONPATH": str(PACKAGE), "MCDEM_PROGRAM": str(program)}
-    words = [sys.executable, "-m", "mcdem.program", "mcdem.distributed", "3", "", "run", "sweep.toml"]
+    words = [sys.executable, "-m", "mcdem", "distribute", "run", "sweep.toml"]
     said = finish(place.start(words, environment), exit_codes=(130,))
     assert "could not be merged" not in said and "Traceback" not in said, said
 
