@@ -5,22 +5,14 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS mcdem RUNTIME COMPONENT program)
 
-# The program generates its completions.
-set(described ${CMAKE_BINARY_DIR}/described)
-add_custom_command(OUTPUT ${described}/done
-  COMMAND ${CMAKE_COMMAND} -E make_directory ${described}
-  COMMAND mcdem completion bash > ${described}/mcdem.bash
-  COMMAND mcdem completion zsh > ${described}/mcdem.zsh
-  COMMAND mcdem completion fish > ${described}/mcdem.fish
-  COMMAND ${CMAKE_COMMAND} -E touch ${described}/done
-  DEPENDS mcdem VERBATIM)
-add_custom_target(mcdem_described ALL DEPENDS ${described}/done)
 set(share ${CMAKE_INSTALL_DATAROOTDIR})
-install(FILES ${described}/mcdem.bash DESTINATION ${share}/bash-completion/completions RENAME mcdem COMPONENT program)
-install(FILES ${described}/mcdem.zsh DESTINATION ${share}/zsh/vendor-completions RENAME _mcdem COMPONENT program)
-install(FILES ${described}/mcdem.fish DESTINATION ${share}/fish/vendor_completions.d COMPONENT program)
+set(completion host/python/mcdem/commands/completion)
+install(FILES ${completion}.bash DESTINATION ${share}/bash-completion/completions RENAME mcdem COMPONENT program)
+install(FILES ${completion}.zsh DESTINATION ${share}/zsh/vendor-completions RENAME _mcdem COMPONENT program)
+install(FILES ${completion}.fish DESTINATION ${share}/fish/vendor_completions.d RENAME mcdem.fish COMPONENT program)
 install(DIRECTORY host/python/mcdem DESTINATION ${share}/mcdem/python COMPONENT program  # what commands run
-  FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "*.jinja" PATTERN __pycache__ EXCLUDE)
+  FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "*.jinja" PATTERN "commands.txt" PATTERN "completion.*"
+  PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY scenes DESTINATION ${share}/mcdem COMPONENT program)
 
 # The engine: all floors below the command line and the Python module.

@@ -31,7 +31,8 @@ set_target_properties(mcdem_python PROPERTIES OUTPUT_NAME _engine CXX_VISIBILITY
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/python/mcdem)
 file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/host/python
   host/python/mcdem/*.py host/python/mcdem/*.pyi host/python/mcdem/py.typed
-  host/python/mcdem/*.js host/python/mcdem/*.css host/python/mcdem/*.jinja)
+  host/python/mcdem/*.js host/python/mcdem/*.css host/python/mcdem/*.jinja host/python/mcdem/commands/commands.txt
+  host/python/mcdem/commands/completion.*)
 foreach(file ${files})
   configure_file(host/python/${file} ${CMAKE_BINARY_DIR}/python/${file} COPYONLY)
 endforeach()

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "cli/shell/subprocess.h"
+#include "cli/shell/shell_words.h"
 
 namespace mcdem {
 namespace {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 
@@ -15,6 +17,20 @@ namespace mcdem {
 #define NEEDS_PYTHON_MODULE() \
     if (!MCDEM_TEST_PYTHON) GTEST_SKIP() << "the Python module was not built (pybind11-dev, python3-dev)"
 
+/// The words of a command line; blanks separate them.
+inline std::vector<std::string> split(const std::string& line) {
+    std::istringstream words(line);
+    return {std::istream_iterator<std::string>(words), {}};
+}
+
+/// Bad input: checks the exit code and a part of the message; every line begins with the program's name.
+inline void expect_bad_input(const Finished& finished, const std::string& part) {
+    EXPECT_EQ(finished.exit_code, 2) << finished.err;
+    EXPECT_THAT(finished.err, testing::HasSubstr(part));
+    EXPECT_THAT(finished.err, testing::StartsWith("mcdem: "));
+    EXPECT_EQ(finished.out, "");
+}
+
 class CliTest : public testing::Test {
 protected:
     CliTest() { std::ofstream(path("small.toml")) << small_scene_text; }
@@ -23,6 +39,12 @@ protected:
     Finished mcdem(const std::vector<std::string>& arguments,
                    const std::vector<std::string>& environment = {}) const {
         return run_program(folder_.path, arguments, environment);
+    }
+    /// Runs a command line.
+    Finished line(const std::string& words) const { return mcdem(split(words)); }
+    void expect_refused(const std::string& words, const std::string& problem) const {
+        SCOPED_TRACE(words);
+        expect_bad_input(line(words), problem);
     }
     /// Arguments of a run of the small scene into `out`, and further ones.
     static std::vector<std::string> run_words(const std::string& out, std::vector<std::string> more = {}) {
@@ -53,6 +75,7 @@ protected:
         return path("held") / std::to_string(child.process());
     }
     void expect_done(const Finished& finished) const { EXPECT_EQ(finished.exit_code, 0) << finished.err; }
+    void expect_done(const std::string& words) const { expect_done(line(words)); }
 
     TestFolder folder_;
 
@@ -66,13 +89,5 @@ private:
         return parent;
     }
 };
-
-/// Bad input: checks the exit code and a part of the message; every line begins with the program's name.
-inline void expect_bad_input(const Finished& finished, const std::string& part) {
-    EXPECT_EQ(finished.exit_code, 2) << finished.err;
-    EXPECT_THAT(finished.err, testing::HasSubstr(part));
-    EXPECT_THAT(finished.err, testing::StartsWith("mcdem: "));
-    EXPECT_EQ(finished.out, "");
-}
 
 }  // namespace mcdem

@@ -1,26 +1,23 @@
 // Output and exit codes for help, versions and errors of the command line.
 #include "cli/cli_test.h"
+#include "cli/shell/command_list.h"
 
 namespace mcdem {
 namespace {
 
 using testing::HasSubstr;
 
-const std::vector<std::string> commands{"devices", "validate",  "run",      "table",  "compare",
-                                        "figures", "calibrate", "converge", "export", "experiment"};
-
-TEST_F(CliTest, HelpNamesAllCommandsAndEachHasAnExample) {
+TEST_F(CliTest, HelpNamesAllCommandsAndTheFirstOnesHaveExamples) {
     const auto help = mcdem({"--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_EQ(help.err, "");
-    for (const auto& command : commands) {
-        EXPECT_THAT(help.out, HasSubstr("\n  " + command + " "));
-        const auto more = mcdem({command, "--help"});
+    for (const auto& [name, about] : listed_commands())
+        EXPECT_THAT(help.out, testing::ContainsRegex("\n  " + name + " +" + about.substr(0, 20)));
+    EXPECT_GT(listed_commands().size(), 10u);
+    for (const std::string name : {"devices", "validate", "run", "table", "experiment"}) {
+        const auto more = mcdem({name, "--help"});
         EXPECT_EQ(more.exit_code, 0);
-        if (command == "devices")
-            EXPECT_THAT(more.out, HasSubstr("--device 0"));
-        else
-            EXPECT_THAT(more.out, HasSubstr("  mcdem " + command + " "));
+        EXPECT_THAT(more.out, HasSubstr(name == "devices" ? "--device 0" : "  mcdem " + name + " "));
     }
 }
 
@@ -30,34 +27,36 @@ TEST_F(CliTest, VersionIsPrinted) {
     EXPECT_THAT(version.out, testing::MatchesRegex("mcdem [0-9]+\\.[0-9]+\\.[0-9]+.*\n"));
 }
 
-TEST_F(CliTest, WrongOptionsAreBadInput) {
-    expect_bad_input(mcdem({}), "subcommand");
-    expect_bad_input(mcdem({"walk"}), "walk");
-    expect_bad_input(mcdem({"run"}), "SCENE is required");
-    expect_bad_input(mcdem({"run", "small.toml"}), "--out is required");
-    expect_bad_input(mcdem({"run", "small.toml", "--out", "a", "--fast"}), "--fast");
-    expect_bad_input(mcdem({"run", "small.toml", "--out"}), "--out");
-    expect_bad_input(mcdem({"run", "--fast"}), "`mcdem run --help` tells more");
+TEST_F(CliTest, WrongCommandLinesAreBadInput) {
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"", "A subcommand is required"},
+        {"walk", "there is no command walk"},
+        {"--walk", "there is no option --walk"},
+        {"verify", "verify is no command any more: every command checks"},
+        {"manual run", "manual is no command any more"},
+        {"run", "SCENE is required"},
+        {"run small.toml", "--out is required"},
+        {"run small.toml --out a --fast", "--fast"},
+        {"run small.toml --out", "--out"},
+        {"run --fast", "`mcdem run --help` tells more"},
+        {"validate nowhere.toml", "nowhere.toml"},
+        {"run nowhere.toml --out a", "nowhere.toml"},
+        {"table nowhere", "nowhere"},
+        {"table small.toml", "small.toml"}};
+    for (const auto& [words, problem] : cases) expect_refused(words, problem);
     expect_bad_input(mcdem({"run", "small.toml", "--out", ""}), "--out: must be a path, got nothing");
-    expect_bad_input(mcdem({"experiment", "from-run", "a", "--out", ""}),
-                     "--out: must be a path, got nothing");
-    expect_bad_input(mcdem({"export", "a", "--out", "b"}), "vtk, xyz or both");
-    expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "a", "--rounds", "many"}), "many");
-    expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "a", "--model", "hertz"}),
-                     "--model must be one of independent, ");
 }
 
-TEST_F(CliTest, MissingFilesAreBadInput) {
-    expect_bad_input(mcdem({"validate", "nowhere.toml"}), "nowhere.toml");
-    expect_bad_input(mcdem({"run", "nowhere.toml", "--out", "a"}), "nowhere.toml");
-    expect_bad_input(mcdem({"table", "nowhere"}), "nowhere");
-    expect_bad_input(mcdem({"compare", "nowhere", "--against", "nowhere"}), "nowhere");
-    expect_bad_input(mcdem({"figures", "nowhere", "--out", "a"}), "nowhere");
-    expect_bad_input(mcdem({"export", "nowhere", "--vtk", "--out", "a"}), "nowhere");
-    if (MCDEM_TEST_PYTHON)
-        expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "nowhere"}), "nowhere");
-    expect_bad_input(mcdem({"table", "."}), "holds no run");
-    expect_bad_input(mcdem({"table", "small.toml"}), "small.toml");
+TEST_F(CliTest, TheProgramNeedsNoPythonOfItsOwn) {
+    const std::vector<std::string> without{"MCDEM_PYTHON=/none", "MCDEM_PYTHON_FOLDER=/none"};
+    for (const char* words : {"--help", "devices", "validate small.toml", "complete -- run --re"})
+        expect_done(mcdem(split(words), without));
+    expect_bad_input(mcdem({"walk"}, without), "there is no command walk");
+    expect_done(mcdem(run_words("a"), without));
+    const auto drawn = mcdem({"run", "small.toml", "--out", "b"}, without);
+    expect_done(drawn);
+    EXPECT_THAT(drawn.err, HasSubstr("no table and no figures: "));
+    EXPECT_THAT(drawn.out, HasSubstr("b/run.h5"));
 }
 
 TEST_F(CliTest, AllProblemsOfASceneAreListedOnePerLine) {

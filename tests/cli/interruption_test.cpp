@@ -112,21 +112,15 @@ TEST_F(InterruptionTest, InterruptedSaysHowToResume) {
 class ProgrammeInterruptionTest : public InterruptionTest, public testing::WithParamInterface<const char*> {
 protected:
     std::vector<std::string> programme(const std::string& out, bool resume) const {
-        const bool cell = std::string(GetParam()) == "cell";
-        std::vector<std::string> words{"run",
-                                       fmt::format("{}/scenes/{}.toml", MCDEM_SOURCE_DIR, GetParam()),
-                                       "--out",
-                                       out,
-                                       "--no-figures",
-                                       "--set",
-                                       "protocol.relax_time=0.01"};
+        auto words =
+            split(fmt::format("run {}/scenes/{}.toml --no-figures --set protocol.relax_time=0.01 --out {} ",
+                              MCDEM_SOURCE_DIR, GetParam(), out) +
+                  (std::string(GetParam()) == "cell"
+                       ? "--set programme.1.strain=0.02 --set programme.2.shear_xz=0.05"
+                       : "--set programme.1.strain=0.05 --set programme.2.time=0.02 --set "
+                         "programme.2.scan_at=[0.01,0.02] --set programme.3.force=0.3 --set "
+                         "programme.4.time=0.02"));
         words.insert(words.end(), often.begin(), often.end());
-        for (const char* set : {cell ? "programme.1.strain=0.02" : "programme.1.strain=0.05",
-                                cell ? "programme.2.shear_xz=0.05" : "programme.2.time=0.02"})
-            words.insert(words.end(), {"--set", set});
-        if (!cell) words.insert(words.end(), {"--set", "programme.2.scan_at=[0.01,0.02]"});
-        if (!cell) words.insert(words.end(), {"--set", "programme.3.force=0.3"});
-        if (!cell) words.insert(words.end(), {"--set", "programme.4.time=0.02"});
         if (resume) words.push_back("--resume");
         return words;
     }
@@ -153,17 +147,15 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ProgrammeInterruptionTest, testing::Values("hol
                          [](const auto& about) { return std::string(about.param); });
 
 TEST_F(InterruptionTest, OneThreadOrTwoGiveTheSameBits) {
-    expect_done(mcdem(run_words("one"), {"POCL_MAX_PTHREAD_COUNT=1"}));
-    expect_done(mcdem(run_words("two"), {"POCL_MAX_PTHREAD_COUNT=2"}));
-    EXPECT_TRUE(result("one") == result("two"));
-}
-
-TEST_F(InterruptionTest, OneThreadOrTwoGiveACellTheSameBits) {
-    for (const std::string threads : {"1", "2"})
-        expect_done(mcdem({"run", MCDEM_SOURCE_DIR "/scenes/cell.toml", "--out", threads, "--no-figures",
-                           "--set", "protocol.relax_time=0.01", "--set", "programme.1.strain=0.02"},
-                          {"POCL_MAX_PTHREAD_COUNT=" + threads}));
-    EXPECT_TRUE(result("1") == result("2"));
+    const std::string cell = "run " MCDEM_SOURCE_DIR
+                             "/scenes/cell.toml --no-figures"
+                             " --set protocol.relax_time=0.01 --set programme.1.strain=0.02";
+    for (const std::string& scene : {std::string("run small.toml --no-figures"), cell}) {
+        for (const std::string threads : {"1", "2"})
+            expect_done(mcdem(split(scene + " --out " + threads), {"POCL_MAX_PTHREAD_COUNT=" + threads}));
+        EXPECT_TRUE(result("1") == result("2")) << scene;
+        for (const char* out : {"1", "2"}) fs::remove_all(path(out));
+    }
 }
 
 TEST_F(InterruptionTest, ACellUnderStressGivesTheSameBitsKilledWithThreadsOrInParts) {
@@ -215,16 +207,6 @@ replicas = 2
     }
     expect_done(mcdem(stressed("parts", {"--part-replicas", "1"})));
     EXPECT_TRUE(result("parts") == result("whole"));
-}
-
-TEST_F(InterruptionTest, TruncatedCheckpointIsRefused) {
-    interrupt("a", SIGINT);
-    fs::resize_file(path("a/checkpoint.h5"), fs::file_size(path("a/checkpoint.h5")) / 2);
-    const auto refused = mcdem(words("a", true));
-    EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_THAT(refused.err, HasSubstr("checkpoint.h5: cannot be opened as HDF5"));
-    EXPECT_THAT(refused.err,
-                HasSubstr("the checkpoint cannot be read: start the run again in another folder"));
 }
 
 TEST_F(InterruptionTest, UnsuitableFoldersAreRefused) {
@@ -287,7 +269,8 @@ private:
     bool mounted_ = false;
 };
 
-TEST_F(InterruptionTest, FullDiskEndsTheRunWhichCanBeResumedLater) {
+/// The disk is full or read-only before the run starts or while it runs; it loses no recorded scan.
+TEST_F(InterruptionTest, ADiskThatFailsEndsTheRunWhichCanBeResumedLater) {
     const SmallDisk disk(path("disk"));
     if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
     expect_done(mcdem(words("whole", false)));
@@ -298,23 +281,26 @@ TEST_F(InterruptionTest, FullDiskEndsTheRunWhichCanBeResumedLater) {
     EXPECT_FALSE(fs::exists(path("disk/a/run.h5")));
     disk.empty();
     expect_goes_on("disk/a");
-}
-
-TEST_F(InterruptionTest, DiskThatFillsUpDuringTheRunLosesNoScan) {
-    const SmallDisk disk(path("disk"));
-    if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
-    expect_done(mcdem(words("whole", false)));
-    const auto child = held("disk/a");
-    disk.fill();
-    let_go_on(*child);
-    const auto full = child->wait();
-    EXPECT_EQ(full.exit_code, 1) << full.err;
-    EXPECT_THAT(full.err, HasSubstr("No space left"));
-    const auto table = mcdem({"table", "disk/a"});
-    expect_done(table);
-    EXPECT_THAT(table.out, HasSubstr("load"));
-    disk.empty();
-    expect_goes_on("disk/a");
+    for (const bool is_full : {true, false}) {
+        const std::string out = is_full ? "disk/b" : "disk/c";
+        const auto child = held(out);
+        if (is_full)
+            disk.fill();
+        else
+            ASSERT_TRUE(disk.make_read_only());
+        let_go_on(*child);
+        const auto stopped = child->wait();
+        EXPECT_EQ(stopped.exit_code, 1) << stopped.err;
+        EXPECT_THAT(stopped.err, HasSubstr(is_full ? "No space left" : out));
+        const auto table = line("table " + out);
+        expect_done(table);
+        EXPECT_THAT(table.out, HasSubstr("load"));
+        if (is_full)
+            disk.empty();
+        else
+            ASSERT_TRUE(disk.make_writable());
+        expect_goes_on(out);
+    }
 }
 
 TEST_F(InterruptionTest, FolderThatCannotBeWrittenToIsRefusedAtOnce) {
@@ -335,32 +321,17 @@ TEST_F(InterruptionTest, FolderThatCannotBeWrittenToIsRefusedAtOnce) {
     expect_refused(run_words("disk/shared", {"--part=1/2"}), "cannot be written to: Read-only file system");
 }
 
-TEST_F(InterruptionTest, FolderThatBecomesReadOnlyEndsTheRunWhichCanBeResumedLater) {
-    const SmallDisk disk(path("disk"));
-    if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
-    expect_done(mcdem(words("whole", false)));
-    const auto child = held("disk/a");
-    ASSERT_TRUE(disk.make_read_only());
-    let_go_on(*child);
-    const auto stopped = child->wait();
-    EXPECT_EQ(stopped.exit_code, 1) << stopped.err;
-    EXPECT_THAT(stopped.err, HasSubstr("disk/a"));
-    expect_done(mcdem({"table", "disk/a"}));
-    ASSERT_TRUE(disk.make_writable());
-    expect_goes_on("disk/a");
-}
-
-TEST_F(InterruptionTest, DamagedScansAreFoundBeforeResuming) {
-    interrupt("a", SIGINT);
-    const auto segment = path("a/segment-000000.h5");
-    ASSERT_TRUE(fs::exists(segment));
-    std::string bytes = bytes_of_file(segment);
-    std::ofstream(segment, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
-    const auto refused = mcdem(words("a", true));
-    EXPECT_EQ(refused.exit_code, 2) << refused.err;
-    EXPECT_THAT(refused.err, HasSubstr("segment-000000.h5"));
-    EXPECT_THAT(refused.err, HasSubstr("start it again in another folder"));
-    EXPECT_THAT(refused.err, testing::Not(HasSubstr("% done")));
+TEST_F(InterruptionTest, TruncatedFilesAreFoundBeforeResuming) {
+    for (const std::string name : {"checkpoint.h5", "segment-000000.h5"}) {
+        interrupt(name, SIGINT);
+        const fs::path file = path(name) / name;
+        fs::resize_file(file, fs::file_size(file) / 2);
+        const auto refused = mcdem(words(name, true));
+        EXPECT_EQ(refused.exit_code, 2) << refused.err;
+        EXPECT_THAT(refused.err, HasSubstr(name + ": "));
+        EXPECT_THAT(refused.err, HasSubstr(" again in another folder"));
+        EXPECT_THAT(refused.err, testing::Not(HasSubstr("% done")));
+    }
 }
 
 }  // namespace

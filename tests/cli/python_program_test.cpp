@@ -38,6 +38,17 @@ protected:
         err_ = testing::internal::GetCapturedStderr();
         return exit_code;
     }
+    /// Runs this text, which makes the file `started`, and sends this process a signal then.
+    int interrupted(const std::string& text, int signal) const {
+        std::thread user([&] {
+            while (!fs::exists(path("started"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            fs::remove(path("started"));
+            ::kill(::getpid(), signal);
+        });
+        const int exit_code = run(text, {folder_.path.string()});
+        user.join();
+        return exit_code;
+    }
 
     TestFolder folder_;
     std::map<std::string, std::optional<std::string>> before_;
@@ -52,14 +63,32 @@ TEST_F(PythonProgramTest, ArgumentsOutputAndExitCodeArePassed) {
 }
 
 TEST_F(PythonProgramTest, ErrorsHaveTheExitCodesAndFormatOfTheProgram) {
-    EXPECT_EQ(run("from mcdem.errors import InputError\nraise InputError(['a: b', 'c: d'])\n"), 2);
-    EXPECT_EQ(err_, "mcdem: a: b\nmcdem: c: d\n");
-    EXPECT_EQ(run("from mcdem.errors import RunError\nraise RunError('no disk')\n"), 1);
-    EXPECT_EQ(err_, "mcdem: no disk\n");
-    EXPECT_EQ(run("open('/no/such/file')\n"), 1);
-    EXPECT_EQ(err_, "mcdem: /no/such/file: No such file or directory\n");
-    EXPECT_EQ(run("import no_such_package.inside\n"), 1);
-    EXPECT_THAT(err_, AllOf(HasSubstr("install python3-no_such_package"), HasSubstr("MCDEM_PYTHON")));
+    struct Case {
+        const char* text;
+        int exit_code;
+        const char* said;  ///< regular expression
+    };
+    const char* const internal = "mcdem: internal error: [A-Za-z]+[^\n]*; please report it[^\n]*\n";
+    for (const auto& [text, exit_code, said] : {
+             Case{"from mcdem.errors import InputError\nraise InputError(['a: b', 'c: d'])", 2,
+                  "mcdem: a: b\nmcdem: c: d\n"},
+             {"from mcdem.errors import RunError\nraise RunError('no disk')", 1, "mcdem: no disk\n"},
+             {"open('/no/such/file')", 1, "mcdem: /no/such/file: No such file or directory\n"},
+             {"import no_such_package.inside", 1, "mcdem: .*install python3-no_such_package.*MCDEM_PYTHON\n"},
+             {"import sys\nsys.exit('a reason')", 1, "mcdem: a reason\n"},
+             {"class Left:\n    def __del__(self):\n        raise ValueError('lost')\nLeft()", 0, ""},
+             {"raise ValueError('odd\\nthing')", 1, internal},
+             {"raise KeyError(3)", 1, internal},
+             {"raise RecursionError('odd thing')", 1, internal},
+             {"raise AssertionError()", 1, internal},
+             {"raise OSError()", 1, internal},
+         }) {
+        EXPECT_EQ(run(text), exit_code) << text;
+        EXPECT_THAT(err_, testing::MatchesRegex(said)) << text;
+    }
+    set("MCDEM_DEBUG", "1");
+    EXPECT_EQ(run("raise KeyError(3)\n"), 1);
+    EXPECT_THAT(err_, HasSubstr("Traceback"));
 }
 
 TEST_F(PythonProgramTest, MissingPartsAreNamed) {
@@ -149,41 +178,17 @@ TEST_F(PythonProgramTest, ControlCharactersDoNotReachTheTerminal) {
     EXPECT_EQ(err_, "mcdem: " + shown + "\n");
 }
 
-TEST_F(PythonProgramTest, AnErrorThatIsNotExpectedIsOneLine) {
-    for (const std::string raised : {"ValueError('odd\\nthing')", "KeyError(3)",
-                                     "RecursionError('odd thing')", "AssertionError()", "OSError()"}) {
-        EXPECT_EQ(run("raise " + raised + "\n"), 1);
-        EXPECT_THAT(err_,
-                    testing::MatchesRegex("mcdem: internal error: [A-Za-z]+[^\n]*; please report it[^\n]*\n"))
-            << raised;
-    }
-    EXPECT_EQ(run("class Left:\n    def __del__(self):\n        raise ValueError('lost')\nLeft()\n"), 0);
-    EXPECT_EQ(err_, "");
-    EXPECT_EQ(run("import sys\nsys.exit('a reason')\n"), 1);
-    EXPECT_EQ(err_, "mcdem: a reason\n");
-    set("MCDEM_DEBUG", "1");
-    EXPECT_EQ(run("raise KeyError(3)\n"), 1);
-    EXPECT_THAT(err_, HasSubstr("Traceback"));
-}
-
 TEST_F(PythonProgramTest, AnInterruptedCommandCleansUpFirst) {
     for (const int signal : {SIGINT, SIGTERM}) {
-        std::thread user([&] {
-            while (!fs::exists(path("started"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            fs::remove(path("started"));
-            ::kill(::getpid(), signal);
-        });
-        EXPECT_EQ(run("import pathlib, sys, time\n"
-                      "from mcdem.files import new_file, temporary_folder\n"
-                      "with new_file(sys.argv[1] + '/result'), temporary_folder() as folder:\n"
-                      "    print(folder, flush=True)\n"
-                      "    (folder / 'kept').touch()\n"
-                      "    pathlib.Path(sys.argv[1], 'started').touch()\n"
-                      "    while True:\n"
-                      "        time.sleep(1)\n",
-                      {folder_.path.string()}),
+        EXPECT_EQ(interrupted("import pathlib, sys, time\n"
+                              "from mcdem.files import new_file, temporary_folder\n"
+                              "with new_file(sys.argv[1] + '/result'), temporary_folder() as folder:\n"
+                              "    print(folder, flush=True)\n"
+                              "    (folder / 'kept').touch()\n"
+                              "    pathlib.Path(sys.argv[1], 'started').touch()\n"
+                              "    time.sleep(600)\n",
+                              signal),
                   130);
-        user.join();
         EXPECT_EQ(err_, "");
         EXPECT_FALSE(fs::exists(out_.substr(0, out_.find('\n')))) << out_;
         for (const auto& entry : fs::directory_iterator(folder_.path))
@@ -196,15 +201,10 @@ TEST_F(PythonProgramTest, AnInterruptedImportIsCalledInterrupted) {
     std::ofstream(path("slow.py")) << "import pathlib, sys, time\n"
                                       "pathlib.Path(sys.argv[1], 'started').touch()\n"
                                       "try:\n"
-                                      "    time.sleep(60)\n"
+                                      "    time.sleep(600)\n"
                                       "except BaseException:\n"
                                       "    raise ImportError('half loaded') from None\n";
-    std::thread user([&] {
-        while (!fs::exists(path("started"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        ::kill(::getpid(), SIGINT);
-    });
-    EXPECT_EQ(run("import slow\n", {folder_.path.string()}), 130);
-    user.join();
+    EXPECT_EQ(interrupted("import slow\n", SIGINT), 130);
     EXPECT_EQ(err_, "");
 }
 

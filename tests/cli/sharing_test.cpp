@@ -7,7 +7,7 @@
 #include "cli/cli_test.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"
-#include "cli/shell/subprocess.h"
+#include "cli/shell/shell_words.h"
 #include "core/errors.h"
 #include "io/result_folder.h"
 
@@ -62,24 +62,18 @@ protected:
     }
 };
 
-TEST_F(SharingTest, ConflictingOptionsAreRefused) {
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"--part", "1/2", "--merge"}, {"--missing", "--merge"}})
-        EXPECT_EQ(mcdem(run_words("out", words)).exit_code, 2) << words.front();
-}
-
-TEST_F(SharingTest, SharesThatAreNoneAreRefused) {
-    for (const char* share : {"3", "0/8", "9/8", "1/", "/8", "1/8x", "-1/8", "1/99999999999999999999"})
-        expect_bad_input(
-            mcdem(run_words("out", {std::string("--part=") + share})),
-            std::string("must be I/N, the I-th of N shares of the parts, as in 3/8; got '") + share);
+TEST_F(SharingTest, WrongOptionsAreRefused) {
+    const std::string run = "run small.toml --no-figures --out out ";
+    for (const std::string share : {"3", "0/8", "9/8", "1/", "/8", "1/8x", "-1/8", "1/99999999999999999999"})
+        expect_refused(run + "--part=" + share,
+                       "must be I/N, the I-th of N shares of the parts, as in 3/8; got '" + share);
+    const std::vector<std::pair<std::string, std::string>> cases{{"--part 1/2 --merge", "--merge"},
+                                                                 {"--missing --merge", "--merge"},
+                                                                 {"--mpi", "--part I/N"},
+                                                                 {"--slurm", "--part I/N"},
+                                                                 {"--device all", "mcdem distribute run"}};
+    for (const auto& [options, problem] : cases) expect_refused(run + options, problem);
     EXPECT_FALSE(fs::exists(path("out")));
-}
-
-TEST_F(SharingTest, OptionsOfEarlierVersionsNameTheirSuccessors) {
-    for (const char* how : {"--mpi", "--slurm"})
-        expect_bad_input(mcdem(run_words("out", {how})), "--part I/N");
-    expect_bad_input(mcdem(run_words("out", {"--device", "all"})), "mcdem distribute run");
 }
 
 /// As one script of a job array would do it.
@@ -105,14 +99,8 @@ TEST_F(SharingTest, SharesAndAMergeGiveTheWholeResult) {
     EXPECT_THAT(merged.out, HasSubstr("replicas done"));
     for (const char* file : {"run.h5", "plate.csv"})
         EXPECT_TRUE(bytes_of_file(path("shared") / file) == bytes_of_file(path("alone") / file)) << file;
-}
-
-TEST_F(SharingTest, AProcessTakesAllPartsOneAfterAnother) {
-    expect_done(mcdem(run_words("alone")));
-    const auto done = mcdem(run_words("parts", {"--part-replicas", "1"}));
-    expect_done(done);
-    EXPECT_THAT(done.out, HasSubstr("replicas done"));
-    EXPECT_TRUE(bytes_of_file(path("parts/run.h5")) == bytes_of_file(path("alone/run.h5")));
+    expect_done(mcdem(run_words("one_by_one", {"--part-replicas", "1"})));
+    EXPECT_TRUE(bytes_of_file(path("one_by_one/run.h5")) == bytes_of_file(path("alone/run.h5")));
 }
 
 TEST_F(SharingTest, ARunOfAnotherProgramIsRefused) {

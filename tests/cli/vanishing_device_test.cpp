@@ -54,28 +54,27 @@ TEST_F(VanishingDeviceTest, TheRunReportsItKeepsItsScansAndResumes) {
     EXPECT_TRUE(bytes_of_file(path("a/run.h5")) == bytes_of_file(path("whole/run.h5")));
 }
 
+/// Also those since the last checkpoint.
 TEST_F(VanishingDeviceTest, CompletedScansCanBeRead) {
-    const auto finished = run_until_it_vanishes("a", 3000, false);
-    ASSERT_EQ(finished.exit_code, 1) << finished.err;
-    const auto table = mcdem({"table", "a"});
-    expect_done(table);
-    // The whole stroke, or less if the disk is so slow that checkpoints are rare.
-    EXPECT_THAT(levels(table.out, "load"), testing::AllOf(SizeIs(2), Each(Gt(0)))) << table.out;
-    EXPECT_THAT(levels(table.out, "unload"), testing::AllOf(SizeIs(2), Each(Lt(4)))) << table.out;
-}
-
-TEST_F(VanishingDeviceTest, ScansSinceTheLastCheckpointCanBeReadToo) {
-    const auto run = run_words("a", {"--set", "output.checkpoint_minutes=60"});
-    expect_done(mcdem(run_words("whole", {"--set", "output.checkpoint_minutes=60"})));
-    const auto finished = mcdem(run, {"OPENCL_LAYERS=" MCDEM_DEVICE_LAYER, "MCDEM_TEST_KERNELS=3000"});
-    ASSERT_EQ(finished.exit_code, 1) << finished.err;
-    const auto table = mcdem({"table", "a"});
-    expect_done(table);
-    EXPECT_THAT(table.out, HasSubstr("load"));
-    auto resume = run;
-    resume.push_back("--resume");
-    expect_done(mcdem(resume));
-    EXPECT_TRUE(bytes_of_file(path("a/run.h5")) == bytes_of_file(path("whole/run.h5")));
+    for (const std::string minutes : {"1e-6", "60"}) {
+        const auto run = [&](const std::string& out) {
+            return run_words(out + minutes, {"--set", "output.checkpoint_minutes=" + minutes});
+        };
+        expect_done(mcdem(run("whole")));
+        const auto finished =
+            mcdem(run("a"), {"OPENCL_LAYERS=" MCDEM_DEVICE_LAYER, "MCDEM_TEST_KERNELS=3000"});
+        ASSERT_EQ(finished.exit_code, 1) << finished.err;
+        const auto table = line("table a" + minutes);
+        expect_done(table);
+        // The whole stroke, or less if the disk is so slow that checkpoints are rare.
+        EXPECT_THAT(levels(table.out, "load"), testing::AllOf(SizeIs(2), Each(Gt(0)))) << table.out;
+        EXPECT_THAT(levels(table.out, "unload"), testing::AllOf(SizeIs(2), Each(Lt(4)))) << table.out;
+        auto resume = run("a");
+        resume.push_back("--resume");
+        expect_done(mcdem(resume));
+        EXPECT_TRUE(bytes_of_file(path("a" + minutes) / "run.h5") ==
+                    bytes_of_file(path("whole" + minutes) / "run.h5"));
+    }
 }
 
 TEST_F(VanishingDeviceTest, AtTheStart) {

@@ -4,9 +4,11 @@ import contextlib
 import io
 import math
 import unittest
+from unittest import mock
 
-from mcdem.commands import COMMANDS
-from mcdem.commands.command_line import command_of, module_of, number_in, parser_of, run_command, whole_in
+from mcdem.commands import COMMANDS, PROGRAM_COMMANDS
+from mcdem.commands.command_line import command_of, module_of, number_in, parser_of, run_command, subcommands, whole_in
+from mcdem.errors import InputError
 
 
 def said_by(*words):
@@ -22,20 +24,43 @@ def said_by(*words):
 class Words(unittest.TestCase):
     def test_choose_a_command_and_its_arguments(self):
         for words, command, arguments in ((["diagnose", "a", "run"], "diagnose", ["a", "run"]), (["nothing", "x"], "nothing", ["x"]),
-                                          (["challenge", "run", "a"], "challenge run", ["a"]), (["challenge"], "challenge", []), ([], "", [])):
+                                          (["challenge", "run", "a"], "challenge run", ["a"]), (["challenge"], "challenge", [])):
             self.assertEqual(command_of(words), (command, arguments))
 
-    def test_every_command_has_help_with_its_words(self):
-        for command in COMMANDS:
-            code, out, _ = said_by(*command.split(), "--help")
-            self.assertEqual((code, out.splitlines()[0].split(" [-h]")[0]), (0, f"Usage: mcdem {command}"))
-            self.assertIn(command, said_by("--help")[1])
+    def test_every_command_has_help_with_its_text_and_an_example(self):
+        for command, about in COMMANDS.items():
+            if command not in PROGRAM_COMMANDS:
+                code, out, _ = said_by(*command.split(), "--help")
+                self.assertEqual((code, out.splitlines()[0].split(" [-h]")[0]), (0, f"Usage: mcdem {command}"))
+                self.assertIn(about, " ".join(out.split()))
+                self.assertIn(f"mcdem {command} ", out.split("\noptions:\n")[1])
+        for command in ("experiment", "challenge"):
+            for name in subcommands(command):
+                self.assertIn(f"  {name:12}{COMMANDS[f'{command} {name}']}\n", said_by(command, "-h")[1])
 
-    def test_without_a_command_are_refused(self):
-        for words, problem in (([], "A subcommand is required"), (["challenge"], "there is no command challenge"),
-                               (["challenge", "win"], "there is no command challenge win"), (["--no"], "there is no option --no")):
+    def test_without_a_subcommand_are_refused(self):
+        for words, problem in ((["challenge"], "A subcommand is required"), (["challenge", "win"], "there is no command win"),
+                               (["experiment", "--no"], "there is no option --no")):
             code, _, messages = said_by(*words)
-            self.assertEqual((code, messages), (2, f"mcdem: {problem}\nmcdem: `mcdem --help` tells more\n"))
+            self.assertEqual((code, messages), (2, f"mcdem: {problem}\nmcdem: `mcdem {words[0]} --help` tells more\n"))
+
+    def test_that_are_no_command_of_python_start_the_program(self):
+        for words in ([], ["run", "s", "--out", "o"], ["--help"], ["nothing"]):
+            with mock.patch("os.execv", side_effect=SystemExit) as start, mock.patch.dict("os.environ", MCDEM_PROGRAM="/x/mcdem"):
+                said_by(*words)
+            start.assert_called_once_with("/x/mcdem", ["/x/mcdem", *words])
+
+    def test_of_a_distributed_command_are_its_own(self):
+        for words, problem in (([], "a command is needed: run, challenge run or diagnose, with its options"),
+                               (["--bogus", "run"], "a command is needed: .*; got --bogus run"), (["table", "a"], "a command is needed"),
+                               (["run", "s", "--part", "1/2"], "--part: cannot be given here"), (["run", "--device=0"], "--device=0: cannot")):
+            with self.assertRaisesRegex(InputError, problem):
+                run_command(["distribute", *words])
+        self.assertIn("--tries: must be a whole number from 1 to 100, got 0", said_by("distribute", "--tries", "0", "run")[2])
+        words = ["diagnose", "s", "--experiment", "e", "--tries", "7"]
+        with mock.patch("mcdem.distributed.compute") as compute:
+            self.assertEqual(run_command(["distribute", "--tries", "2", *words]), 0)
+        compute.assert_called_once_with(words, client=None, tries=2)
 
     def test_of_a_challenge_are_checked(self):
         for words, problem in ((["make", "s", "--out", "o", "--truth", ""], "--truth: must be a path, got nothing"),
@@ -48,7 +73,8 @@ class Words(unittest.TestCase):
     def test_are_completed(self):
         for words, out in ((["diagnose", "--ref"], "--refine\tIf the scene is not"), (["diagnose", "--experiment", ""], ":folders\n"),
                            (["challenge", "run", "--library", ""], ":files\n"), (["challenge", "run", "--mp"], ""),
-                           (["challenge", "run", "--library-pai"], "--library-pairs\t")):
+                           (["challenge", "run", "--library-pai"], "--library-pairs\t"), (["experiment", "ch"], "check\tReport which"),
+                           (["experiment", "check", ""], ":files\n"), (["completion", "z"], "zsh\n"), (["experiment", "none", "x"], "")):
             code, said, _ = said_by("complete", *words)
             self.assertEqual((code, said[:len(out) or 1]), (0, out), words)
 

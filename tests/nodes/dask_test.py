@@ -140,18 +140,16 @@ def an_interrupted_merge_is_called_interrupted(place):
     program.write_text("#!/bin/sh\ncase \"$*\" in *--merge*) exit 130;; *--alike*) echo 0;; esac\n")
     program.chmod(0o755)
     environment = {"PYTHONPATH": str(PACKAGE), "MCDEM_PROGRAM": str(program)}
-    words = [sys.executable, "-m", "mcdem.program", "mcdem.distributed", "3", "", "run", "sweep.toml"]
+    words = [sys.executable, "-m", "mcdem", "distribute", "run", "sweep.toml"]
     said = finish(place.start(words, environment), exit_codes=(130,))
     assert "could not be merged" not in said and "Traceback" not in said, said
 
 
 def says_what_is_wrong(place):
     """Bad input, and the message if packages are missing."""
-    for words in ([], ["table", "dask"], ["--bogus", *command_of("sweep.toml", "dask")]):
-        assert "a command is needed" in finish(distribute(place, words), exit_codes=(2,)), words
-    for more in (["--part", "1/2"], ["--device=0"], ["--merge"], ["--workers", "3"], ["--missing"]):
-        said = finish(distribute(place, [*command_of("sweep.toml", "dask"), *more]), exit_codes=(2,))
-        assert f"{more[0]}: cannot be given here" in said, said
+    for words, problem in ((["--bogus", *command_of("sweep.toml", "dask")], "a command is needed"),
+                           ([*command_of("sweep.toml", "dask"), "--part", "1/2"], "--part: cannot be given here")):
+        assert problem in finish(distribute(place, words), exit_codes=(2,)), words
     assert not (place.path / "dask").exists()
     said = finish(distribute(place, [*command_of("sweep.toml", "dask"), "--set", "nothing=1"]), exit_codes=(2,))
     assert "mcdem: " in said and "nothing" in said and "Traceback" not in said, said

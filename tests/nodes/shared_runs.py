@@ -46,14 +46,6 @@ def skip(reason):
     sys.exit(SKIPPED)
 
 
-def program(name, package):
-    """The path of a program; if it is missing the test is skipped."""
-    for folder in [*os.environ["PATH"].split(":"), "/usr/sbin", "/sbin"]:
-        if os.access(pathlib.Path(folder) / name, os.X_OK):
-            return str(pathlib.Path(folder) / name)
-    skip(f"{name} is not there (Debian package {package})")
-
-
 def command_of(scene, out):
     return ["run", scene, "--out", out, "--no-figures"]
 
@@ -195,32 +187,9 @@ def has_two_devices(place):
     return len(re.findall(r"(?m)^ *\d+ ", devices)) >= 2
 
 
-class PartsSeen:
-    """Every part file that ever existed in the folder, by inode: a part that is computed twice has two."""
-
-    def __init__(self, folder):
-        self.folder, self.inodes = folder, {}
-
-    def look(self):
-        for file in files_in(self.folder, "*.h5"):
-            try:
-                self.inodes.setdefault(file.name, set()).add(file.stat().st_ino)
-            except OSError:
-                pass
-
-    def watch(self, process):
-        while process.poll() is None:
-            self.look()
-            time.sleep(0.01)
-
-    def expect_each_once(self):
-        assert self.inodes and all(len(inodes) == 1 for inodes in self.inodes.values()), self.inodes
-
-
-def run_tests(tests, settle=lambda: None):
-    """Runs each test in a folder of its own; `settle` returns when nothing of a test is running any more."""
+def run_tests(tests):
+    """Runs each test in a folder of its own."""
     for test in tests:
         print(f"{test.__name__}: {test.__doc__}", flush=True)
         with Place(sys.argv[1]) as place:
             test(place)
-            settle()

@@ -4,14 +4,14 @@
 
 #include "cl/profile.h"
 #include "cli/parts/sharing.h"
-#include "cli/run/figures.h"
 #include "cli/run/scene_options.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
+#include "cli/shell/python_program.h"
+#include "cli/shell/shell_words.h"
 #include "cli/shell/standard_streams.h"
-#include "cli/shell/subprocess.h"
 #include "core/container.h"
 #include "core/errors.h"
 #include "core/parameters.h"
@@ -113,10 +113,16 @@ void print_paths(const std::filesystem::path& folder) {
     for (const auto& file : {run_file(folder), folder / "plate.csv"}) print_out("  {}\n", file.string());
 }
 
-/// The table of forces, the figures and the paths.
+/// The table of forces, the figures and the paths, by the Python package.
 void present_run(const std::filesystem::path& folder) {
     try {
-        present("present_run", {folder.string()});
+        const int code = run_python_module("mcdem.report.present_run", {folder.string()});
+        if (code == exit_interrupted) throw Interrupted();
+        if (code != exit_done)
+            throw RunError(
+                fmt::format("the results are written, but could not all be shown: Python ended with exit "
+                            "code {}",
+                            code));
     } catch (const Interrupted&) {
         throw;
     } catch (const std::exception& error) {
@@ -195,22 +201,21 @@ int run(const RunCommand& command) {
 
 }  // namespace
 
-void add_run(CLI::App& app, int& exit_code) {
-    auto* sub = app.add_subcommand("run", "Run a scene and write the results to a folder");
+void add_run(CLI::App& sub, int& exit_code) {
     auto command = std::make_shared<RunCommand>();
-    add_scene_options(*sub, command->scene);
-    sub->add_option("--out", command->out, "Result folder; created if missing")->required()->type_name("DIR");
-    sub->add_flag("--resume", command->resume, "Continue the interrupted run in DIR");
-    sub->add_flag("--no-figures", command->no_figures, "Do not draw figures at the end, and print no table");
-    add_sharing_options(*sub, command->sharing, command->device);
-    sub->add_option_function<std::size_t>(
+    add_scene_options(sub, command->scene);
+    sub.add_option("--out", command->out, "Result folder; created if missing")->required()->type_name("DIR");
+    sub.add_flag("--resume", command->resume, "Continue the interrupted run in DIR");
+    sub.add_flag("--no-figures", command->no_figures, "Do not draw figures at the end, and print no table");
+    add_sharing_options(sub, command->sharing, command->device);
+    sub.add_option_function<std::size_t>(
            "--part-replicas", [command](std::size_t replicas) { command->cut.part_replicas = replicas; },
            "Run in parts of so many replicas; default with --part: enough to fill a device, but at least two "
            "parts per process")
         ->check(CLI::Range(1, 10'000))
         ->type_name("N")
         ->group("Many devices and nodes");
-    sub->footer(
+    sub.footer(
         "Writes run.h5 (everything, HDF5), plate.csv (forces and averages) and figures into DIR. A replica "
         "that\n"
         "fails is reported and recorded; the others continue. The exit code is 1 if all replicas failed.\n"
@@ -228,7 +233,7 @@ void add_run(CLI::App& app, int& exit_code) {
         "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere --resume\n"
         "  mcdem run scenes/replicas.toml --out out/shared --part 3/8\n"
         "  mcdem run scenes/replicas.toml --out out/shared --merge");
-    sub->callback([command, &exit_code] { exit_code = run(*command); });
+    sub.callback([command, &exit_code] { exit_code = run(*command); });
 }
 
 }  // namespace mcdem::cli

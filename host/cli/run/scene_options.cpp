@@ -15,8 +15,9 @@ Scene SceneOptions::read() const {
     return scene;
 }
 
-void add_scene_options(CLI::App& command, SceneOptions& options, const char* name, const char* help) {
-    command.add_option(name, options.file, help)->required();
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+    command.add_option("SCENE", options.file, "Scene file (TOML; scenes/README.md explains every key)")
+        ->required();
     command.add_option("--set", options.overrides, "Override a scene key; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);

@@ -13,8 +13,7 @@ struct SceneOptions {
     std::vector<std::string> overrides;
     Scene read() const;
 };
-void add_scene_options(CLI::App& command, SceneOptions& options, const char* name = "SCENE",
-                       const char* help = "Scene file (TOML; scenes/README.md explains every key)");
+void add_scene_options(CLI::App& command, SceneOptions& options);
 
 void add_device_option(CLI::App& command, std::string& choice);
 

@@ -81,19 +81,18 @@ void print_scene(const SceneOptions& options, const std::string& choice) {
 
 }  // namespace
 
-void add_validate(CLI::App& app, int&) {
-    auto* command = app.add_subcommand("validate", "Check a scene and report what it would run");
+void add_validate(CLI::App& command, int&) {
     auto options = std::make_shared<SceneOptions>();
     auto choice = std::make_shared<std::string>();
-    add_scene_options(*command, *options);
-    add_device_option(*command, *choice);
-    command->footer(
+    add_scene_options(command, *options);
+    add_device_option(command, *choice);
+    command.footer(
         "Checks the scene, and whether it fits into the device's memory.\n"
         "All problems are listed as `file:line: key must be .., got ..`; the exit code is then 2.\n"
         "Examples:\n"
         "  mcdem validate scenes/compression.toml\n"
         "  mcdem validate scenes/small.toml --set grains.friction=0.1 --set contact.model=elastic_sphere");
-    command->callback([options, choice] { print_scene(*options, *choice); });
+    command.callback([options, choice] { print_scene(*options, *choice); });
 }
 
 }  // namespace mcdem::cli

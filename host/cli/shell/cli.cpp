@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <initializer_list>
+#include <map>
 #include <new>
 
 #include "cl/kernel_cache.h"
+#include "cli/shell/command_list.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/messages.h"
+#include "cli/shell/python_program.h"
 #include "cli/shell/standard_streams.h"
 #include "core/errors.h"
 #include "core/stack.h"
@@ -40,65 +43,79 @@ const char* const first_steps =
 
 /// Reports an error in the command line, and which help to read.
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
-    std::string command = "mcdem";
-    const CLI::App* last = &app;
-    while (!last->get_subcommands().empty()) {
-        last = last->get_subcommands().front();
-        command += " " + last->get_name();
-    }
+    const auto chosen = app.get_subcommands();
     // "A subcommand is required" does not mention an unknown subcommand.
-    const auto unknown =
-        last->get_require_subcommand_min() > 0 ? app.remaining(true) : std::vector<std::string>{};
+    const auto unknown = chosen.empty() ? app.remaining() : std::vector<std::string>{};
     if (unknown.empty())
         spdlog::error("{}", error.what());
     else
         spdlog::error("there is no {} {}", unknown.front().starts_with('-') ? "option" : "command",
                       unknown.front());
-    spdlog::error("`{} --help` tells more", command);
+    spdlog::error("`mcdem {}--help` tells more", chosen.empty() ? "" : chosen.front()->get_name() + " ");
     return exit_bad_input;
 }
 
 /// Shows default values in the help. Refuses empty paths, which would mean the current folder, or fail only
 /// after the work.
-void finish_options(CLI::App& app) {
-    for (CLI::Option* option : app.get_options()) {
+void finish_options(CLI::App& command) {
+    for (CLI::Option* option : command.get_options()) {
         if (option->get_items_expected_max() == 1) option->capture_default_str();
         if (option->get_single_name() == "out")
             option->check([](const std::string& path) {
                 return path.empty() ? std::string("must be a path, got nothing") : std::string();
             });
     }
-    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-        finish_options(*command);
 }
 
-/// Commands of earlier versions.
-void add_replaced(CLI::App& app) {
-    for (const auto& [name, remedy] : {std::pair{"verify",
-                                                 "every command checks the tables that it reads; `sha256sum "
-                                                 "--check SHA256SUMS` checks the files "
-                                                 "of an experiment"},
-                                       {"manual", "`mcdem COMMAND --help` shows the same text"}}) {
-        auto* command = app.add_subcommand(name)->group("")->allow_extras();
-        command->callback([name = name, remedy = remedy] {
-            throw InputError(fmt::format("{} is no command any more: {}", name, remedy));
-        });
+/// `mcdem complete -- WORD..`, which the completion scripts of the shells start.
+int complete(const CLI::App& app, std::vector<std::string> words) {
+    words.erase(words.begin(), words.begin() + (words.size() > 1 && words[1] == "--" ? 2 : 1));
+    if (words.size() < 2 || !is_python_command(words.front())) {
+        print_candidates(app, words);
+        return exit_done;
+    }
+    words.insert(words.begin(), "complete");
+    return run_python_module("mcdem.run_command", words);
+}
+
+/// Commands of earlier versions, and what to do instead.
+void expect_not_replaced(const std::string& name) {
+    const char* const remedy =
+        name == "verify"   ? "every command checks the tables that it reads; `sha256sum --check SHA256SUMS` "
+                             "checks the files of an experiment"
+        : name == "manual" ? "`mcdem COMMAND --help` shows the same text"
+                           : nullptr;
+    if (remedy) throw InputError(fmt::format("{} is no command any more: {}", name, remedy));
+}
+
+/// Adds all listed commands. Those of the Python package have only their texts here.
+void add_commands(CLI::App& app, int& exit_code) {
+    const std::map<std::string, void (*)(CLI::App&, int&)> own{
+        {"devices", add_devices}, {"validate", add_validate}, {"run", add_run}};
+    for (const auto& [name, about] : listed_commands()) {
+        CLI::App* const command = app.add_subcommand(name, about);
+        if (!own.contains(name)) continue;
+        own.at(name)(*command, exit_code);
+        finish_options(*command);
     }
 }
 
 int command_line(int argc, const char* const* argv) {
+    const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    const std::string first = words.empty() ? "" : words.front();
+    if (is_python_command(first)) return run_python_module("mcdem.run_command", words);
+    expect_not_replaced(first);
     CLI::App app(about, "mcdem");
     app.footer(first_steps);
     app.require_subcommand(1);
     app.set_version_flag("--version", std::string("mcdem ") + version_text);
     int exit_code = exit_done;
-    for (const auto add :
-         {add_devices, add_validate, add_run, add_distribute, add_python_commands, add_completion})
-        add(app, exit_code);
-    add_replaced(app);
-    finish_options(app);
+    add_commands(app, exit_code);
     try {
-        app.parse(argc, argv);
+        if (first == "complete")
+            exit_code = complete(app, words);
+        else
+            app.parse(argc, argv);
         return exit_code;
     } catch (const CLI::ParseError& error) {
         return error.get_exit_code() == 0 ? app.exit(error) : report_usage(app, error);
@@ -108,8 +125,7 @@ int command_line(int argc, const char* const* argv) {
 constexpr char hint[] =
     "mcdem: ended by a defect of the program or of the OpenCL driver. If it happens again, remove the "
     "compiled kernels (folder POCL_CACHE_DIR, ~/.cache/pocl/kcache or mcdem-kernels-.. in /tmp), which may "
-    "be "
-    "damaged; they are compiled again. Continue a run with --resume.\n";
+    "be damaged; they are compiled again. Continue a run with --resume.\n";
 
 void say_hint(int signal) {
     const ssize_t written = write(STDERR_FILENO, hint, sizeof hint - 1);

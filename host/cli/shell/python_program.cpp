@@ -2,18 +2,22 @@
 
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <sstream>
 #include <thread>
 
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"
-#include "cli/shell/subprocess.h"
 #include "core/errors.h"
 #include "core/look.h"
 
@@ -23,6 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr auto check_interval = std::chrono::milliseconds(5);  ///< of whether it has ended
+constexpr int not_found = 127;                                 ///< exit code if there is no such program
+
+fs::path this_program() { return fs::read_symlink("/proc/self/exe"); }
 
 std::string variable(const char* name) {
     const char* value = std::getenv(name);
@@ -76,33 +83,40 @@ fs::path start_file() {
                     looked));
 }
 
-/// Starts it with SIGINT held back until it can clean up (program.py): Python's own handler would print where
-/// it was interrupted.
-Subprocess start(const std::vector<std::string>& words) {
+/// Runs the words in a child process, which gets SIGTERM when this one dies. It starts with SIGINT held back
+/// until it can clean up (program.py): Python's own handler would print where it was interrupted.
+pid_t start(std::vector<std::string> words) {
+    std::vector<char*> arguments;
+    for (auto& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
     sigset_t held, before;
     sigemptyset(&held);
     sigaddset(&held, SIGINT);
     ::pthread_sigmask(SIG_BLOCK, &held, &before);
-    try {
-        Subprocess python(words);
-        ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-        return python;
-    } catch (...) {
-        ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-        throw;
+    const pid_t parent = ::getpid(), child = ::fork();
+    const int error = errno;
+    if (child == 0) {  // only async-signal-safe functions between fork and exec
+        ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+        if (::getppid() == parent) ::execvp(arguments[0], arguments.data());
+        ::_exit(not_found);
     }
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    if (child < 0) throw RunError(words.front() + ": cannot be started: " + std::strerror(error));
+    return child;
 }
 
-ProgramEnd end_of(Subprocess python) {
+/// Waits for the child, to which an interruption is passed on; returns the status of waitpid.
+int status_of(pid_t child) {
     const Interrupt interrupt;
-    for (bool told = false;;) {
-        if (const auto end = python.ended()) return *end;
+    int status = 0;
+    for (bool told = false; ::waitpid(child, &status, WNOHANG) != child;) {
         if (Interrupt::wanted() && !told) {
-            python.send(SIGTERM);
+            ::kill(child, SIGTERM);
             told = true;
         }
         std::this_thread::sleep_for(check_interval);
     }
+    return status;
 }
 
 }  // namespace
@@ -116,15 +130,16 @@ int run_python_module(const std::string& module, const std::vector<std::string>&
     words.insert(words.end(), arguments.begin(), arguments.end());
     ::setenv("MCDEM_PROGRAM", this_program().c_str(), 1);
     std::fflush(stdout);  // otherwise its output would come first
-    const ProgramEnd end = end_of(start(words));
-    if (end.exit_code == not_found)
+    const int status = status_of(start(words));
+    if (WIFEXITED(status) && WEXITSTATUS(status) == not_found)
         throw RunError(fmt::format(
             "{}: cannot be started: install python3, or name a Python 3 by MCDEM_PYTHON", python));
-    if (end.exit_code >= 0) return end.exit_code;
-    if (end.signal == SIGINT || end.signal == SIGTERM || end.signal == SIGHUP) return exit_interrupted;
-    ::raise(end.signal);  // ends as the command would: distributed.py distinguishes it, cli.cpp hints at the
-                          // cause
-    throw RunError(fmt::format("{}: was ended by signal {}", python, end.signal));
+    if (WIFEXITED(status)) return WEXITSTATUS(status);
+    const int signal = WTERMSIG(status);
+    if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP) return exit_interrupted;
+    ::raise(
+        signal);  // ends as the command would: distributed.py distinguishes it, cli.cpp hints at the cause
+    throw RunError(fmt::format("{}: was ended by signal {}", python, signal));
 }
 
 }  // namespace mcdem::cli

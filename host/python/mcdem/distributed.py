@@ -21,7 +21,7 @@ from typing import Any, Callable
 from .command import ask, problems_of, program_path
 from .errors import INTERRUPTED, InputError, RunError
 from .look import is_there
-from .program import raise_when_interrupted
+from .program import say
 from .toml import assignments
 
 TRIES = 3  # per part, not counting lost workers
@@ -46,7 +46,7 @@ def compute(words: list[str], *, client: Any = None, folder: str | os.PathLike[s
     `words`: the command line after `mcdem`. `client`: a distributed.Client; default: one process at a time on each
     device of this machine. `folder`: working folder of the command. Raises InputError and RunError.
     """
-    report = report or (lambda line: print(f"mcdem: {line}", file=sys.stderr, flush=True))
+    report = report or say
     folder = os.path.abspath(folder or ".")
     if client:
         report(f"dashboard: {client.dashboard_link}")
@@ -157,7 +157,11 @@ class LocalDevices:
 
 
 class DaskWorkers:
+    """Workers of a Dask cluster. They get the code of the task, so that they do not need the package mcdem."""
+
     def __init__(self, client):
+        import cloudpickle
+        cloudpickle.register_pickle_by_value(sys.modules[__name__])
         self.client = client
 
     def count(self):
@@ -206,47 +210,10 @@ def compute_task(command, folder, part):
     return compute_part(command, folder, part, devices[place % len(devices)] if devices else "")
 
 
-def send_by_value():
-    """Sends the code of the task to the workers, so that they do not need the package mcdem."""
-    if __name__ != "__main__":
-        import cloudpickle
-        cloudpickle.register_pickle_by_value(sys.modules[__name__])
-
-
-def client_of(scheduler):
+def client_of(scheduler: str) -> Any:
     """Of a Dask scheduler that runs already, by its address or file."""
     import distributed
     try:
         return distributed.Client(scheduler_file=scheduler) if is_there(scheduler) else distributed.Client(scheduler)
     except (OSError, TypeError, ValueError) as error:
         raise InputError(f"--scheduler: must be the address or file of a Dask scheduler that answers, got {scheduler}: {error}")
-
-
-COMMANDS = (["run"], ["diagnose"], ["challenge", "run"])
-OWN_OPTIONS = ("--device", "--part", "--merge", "--missing", "--workers")
-
-
-def expect_command(words):
-    """Raises InputError unless the words are a command that works in parts, without the options that are given here."""
-    if not any(words[:len(command)] == command for command in COMMANDS):
-        raise InputError(f"a command is needed: run, challenge run or diagnose, with its options; got {' '.join(words[:2])}")
-    for word in words:
-        if word.split("=")[0] in OWN_OPTIONS:
-            raise InputError(f"{word}: cannot be given here, `mcdem distribute` sets it for each process")
-
-
-def main():
-    """What `mcdem distribute` starts (host/cli/parts/distribute.cpp): TRIES SCHEDULER WORD.., the second may be empty."""
-    tries, scheduler, *words = sys.argv[1:]
-    expect_command(words)
-    with contextlib.ExitStack() as stack:
-        client = stack.enter_context(client_of(scheduler)) if scheduler else None
-        raise_when_interrupted()
-        compute(words, client=client, tries=int(tries))
-
-
-if __name__ == "__main__":
-    main()
-else:
-    with contextlib.suppress(ModuleNotFoundError):  # reported where it is used
-        send_by_value()

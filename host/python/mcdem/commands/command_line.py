@@ -2,16 +2,15 @@
 import argparse
 import importlib
 import math
+import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
-from ..command import ask
+from ..command import ask, program_path
 from ..program import say
-from . import COMMANDS
+from . import COMMANDS, PROGRAM_COMMANDS
 
-ABOUT = "Diagnoses experiments, and presents results of mcdem: dense packings of soft grains with multi-contact forces (MC-DEM)."
-EXIT_CODES = "Exit codes: 0 success, 1 failure (also if output cannot be written), 2 invalid input, 130 interrupted."
 BAD_INPUT = 2
 
 
@@ -105,37 +104,32 @@ def output_path(text: str) -> str:
     return text
 
 
-def general_help() -> str:
-    width = max(map(len, COMMANDS)) + 2
-    commands = "\n".join(f"  {word:{width}}{about}" for word, about in COMMANDS.items())
-    return f"{ABOUT}\nUsage: mcdem COMMAND [OPTIONS]\n\nCommands:\n{commands}\n\n{EXIT_CODES}\n"
-
-
 def run_command(words: Sequence[str]) -> int:
-    """Runs a command with its arguments and returns its exit code."""
+    """Runs a command with its arguments and returns its exit code. The program answers what is no command of Python."""
     word = words[0] if words else ""
-    if word in ("-h", "--help"):
-        print(general_help(), end="")
+    if word == "complete":
+        complete(words[1:])
         return 0
-    if word == "complete" and len(words) > 2:
-        command, arguments = command_of(words[1:])
-        complete(command, arguments)
-        return 0
+    if word not in COMMANDS or word in PROGRAM_COMMANDS:
+        program = program_path()
+        os.execv(program, [program, *words])
     command, arguments = command_of(words)
-    if command not in COMMANDS:
-        kind = "option" if command.startswith("-") else "command"
-        say(f"there is no {kind} {command}" if command else "A subcommand is required")
-        say("`mcdem --help` tells more")
-        return BAD_INPUT
+    if subcommands(command):
+        return answer_without_subcommand(command, arguments)
     module = module_of(command)
-    return int(module.run(parser_of(command, module).parse_intermixed_args(arguments)))
+    parse = getattr(module, "parse", Parser.parse_intermixed_args)
+    return int(module.run(parse(parser_of(command, module), arguments)))
+
+
+def subcommands(command: str) -> list[str]:
+    """Of a command such as `experiment`, which has only these."""
+    return [both.removeprefix(f"{command} ") for both in COMMANDS if both.startswith(f"{command} ")]
 
 
 def command_of(words: Sequence[str]) -> tuple[str, Sequence[str]]:
     """The command, of one or two words, and its arguments."""
-    both = " ".join(words[:2])
-    is_group = any(command.startswith(f"{words[0]} ") for command in COMMANDS) if words else False
-    return (both, words[2:]) if is_group else ("".join(words[:1]), words[1:])
+    length = 2 if " ".join(words[:2]) in COMMANDS else 1
+    return " ".join(words[:length]), words[length:]
 
 
 def module_of(command: str) -> Any:
@@ -149,12 +143,29 @@ def parser_of(command: str, module: Any) -> Parser:
     return parser
 
 
-def complete(command: str, words: Sequence[str]) -> None:
-    """Prints what can follow the words of a command line, of which the last one may be incomplete (host/cli/shell/completion.cpp).
+def answer_without_subcommand(command: str, words: Sequence[str]) -> int:
+    """Prints the help of a command that has only subcommands, or refuses the words."""
+    texts = "".join(f"  {name:12}{COMMANDS[f'{command} {name}']}\n" for name in subcommands(command))
+    parser = Parser(prog=f"mcdem {command}", usage=f"mcdem {command} [-h] SUBCOMMAND ..", description=COMMANDS[command],
+                    epilog=f"Subcommands:\n{texts}\n{module_of(command).EPILOG}", formatter_class=Help)
+    if not words:
+        parser.error("A subcommand is required")
+    if words[0] not in ("-h", "--help"):
+        parser.error(f"there is no {'option' if words[0].startswith('-') else 'command'} {words[0]}")
+    parser.print_help()
+    return 0
+
+
+def complete(words: Sequence[str]) -> None:
+    """Prints what can follow the words of a command line, of which the last one may be incomplete.
 
     A line is a candidate, with its description after a tab, or `:files` or `:folders` for those that the shell finds.
     """
-    *before, word = words
+    *given, word = words
+    command, before = command_of(given)
+    if names := subcommands(command):
+        offer(word, {name: COMMANDS[f"{command} {name}"] for name in names if not before})
+        return
     actions = parser_of(command, module_of(command))._actions
     options = {name: action for action in actions for name in action.option_strings if action.help is not argparse.SUPPRESS}
     asked = options.get(before[-1]) if before else None
@@ -164,8 +175,15 @@ def complete(command: str, words: Sequence[str]) -> None:
         if asked.metavar == "KEY=VALUE":
             print(ask(["complete", "--", "run", "--set", word]), end="")  # the program knows the keys of a scene
     elif word.startswith("-"):
-        for name, action in options.items():
-            if name.startswith(word):
-                print(f"{name}\t{(action.help or '').splitlines()[0]}")
+        offer(word, {name: (action.help or "").splitlines()[0] for name, action in options.items()})
+    elif choices := [choice for action in actions if not action.option_strings for choice in action.choices or ()]:
+        offer(word, dict.fromkeys(choices, ""))
     else:
         print(":files")
+
+
+def offer(word: str, candidates: Mapping[str, str]) -> None:
+    """Prints the candidates that continue the word, with their descriptions."""
+    for name, about in candidates.items():
+        if name.startswith(word):
+            print(f"{name}\t{about}" if about else name)
