@@ -208,10 +208,10 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
 
 bool Simulation::take_note(int replica, const IntervalResult& result) {
     auto& runner = runners_[replica];
-    const bool relaxes = runner.state().stage == ProtocolState::Stage::relax;
+    const bool relaxes = runner.state().activity == Activity::relax;
     const Protocol& protocol = scene_.replicas[replica].protocol;
     // Only a strong drag tells whether grains are at rest.
-    const bool stops = runner.state().stage == ProtocolState::Stage::settle && protocol.stop_at_scans &&
+    const bool stops = runner.state().activity == Activity::settle && protocol.stop_at_scans &&
                        protocol.pause == 0 && protocol.settle_drag > 0;
     plates_[replica].on_interval_done(result);
     budgets_[replica].add(result);

@@ -199,9 +199,9 @@ TEST(PlateCompliance, NoScanBeforeThePlateArrives) {
     still.steps = 60;
     still.elastic_energy = 1;
     for (int k = 0; k < 5; ++k) runner.on_interval_done(still, false);
-    EXPECT_EQ(runner.state().stage, mcdem::ProtocolState::Stage::relax);
+    EXPECT_EQ(runner.state().activity, mcdem::ProtocolState::Activity::relax);
     for (int k = 0; k < 2; ++k) runner.on_interval_done(still, true);
-    EXPECT_EQ(runner.state().stage, mcdem::ProtocolState::Stage::move);
+    EXPECT_EQ(runner.state().activity, mcdem::ProtocolState::Activity::move);
 }
 
 TEST(PlateCompliance, RigidPlateIsUnchanged) {

@@ -229,7 +229,7 @@ TEST(Protocol, ThePlateWaitsWhileGrainsRearrange) {
     const auto speed_after = [&](double energy) {
         ProtocolRunner runner(replica, time_step, grains);
         const auto five_steps = [](const StepInterval&) { return 5; };
-        while (runner.state().stage == ProtocolState::Stage::relax) runner.on_interval_done(answer(10, 0));
+        while (runner.state().activity == ProtocolState::Activity::relax) runner.on_interval_done(answer(10, 0));
         runner.on_interval_done(answer(runner.next(five_steps).steps, energy));
         return std::abs(runner.next(five_steps).plate_velocity);
     };
@@ -295,7 +295,7 @@ TEST(Protocol, APlateThatTouchesNoGrainIsFast) {
 TEST(Protocol, WithoutAToleranceTheSpeedIsThatOfTheScene) {
     Replica replica = replica_of(1, 4, false);
     ProtocolRunner runner(replica, time_step, scale);
-    while (runner.state().stage == ProtocolState::Stage::relax) runner.on_interval_done(answer(10, 0));
+    while (runner.state().activity == ProtocolState::Activity::relax) runner.on_interval_done(answer(10, 0));
     EXPECT_NEAR(runner.next([](const StepInterval&) { return 5; }).plate_velocity, -0.5, 1e-9);
     const double strain_rate = 0.5 / replica.plate.start, min_pressure = 1e-5 * replica.grains.youngs_modulus;
     ASSERT_FALSE(runner.on_interval_done(answer(5, 0)));

@@ -13,7 +13,7 @@ struct Traced {
     struct Row {
         double time, plate_z, force;  ///< [s], [m], [N]
         int leg;
-        mcdem::ProtocolState::Stage stage;
+        mcdem::ProtocolState::Activity stage;
         mcdem::Mat3 stress;  ///< of a cell [Pa]
         mcdem::Strain strain;
     };
@@ -47,7 +47,7 @@ inline Traced trace(const mcdem::Scene& scene, int r, Packing packing) {
         plate.on_interval_done(result);
         const auto scan = runner.on_interval_done(result, plate.arrived(engine.max_plate_move(0)));
         const double force = result.wall_force[static_cast<int>(mcdem::Wall::plate)].z();
-        traced.rows.push_back({runner.state().time, runner.plate_z(), force, before.leg, before.stage,
+        traced.rows.push_back({runner.state().time, runner.plate_z(), force, before.leg, before.activity,
                                result.stress, runner.strain()});
         if (scan) traced.scans.push_back({*scan, force, result.stress, runner.strain(), engine.state(0)});
         traced.status |= result.status;
