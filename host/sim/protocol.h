@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/expects.h"
 #include "sim/motion.h"
 
 namespace mcdem::inline sim {
@@ -21,6 +22,7 @@ public:
     StepInterval next(Longest longest) const {
         if (finished()) return {};
         StepInterval interval = motion().plan(programme_).interval;
+        expects(interval.steps > 0, "a replica whose programme goes on makes steps");
         interval.steps = std::min(interval.steps, longest(interval));
         return interval;
     }
