@@ -80,12 +80,21 @@ FieldExtents field_extents(const KernelBuild& build, const std::vector<Replica>&
     return extents;
 }
 
-FieldMemory memory_needed(Precision precision, int slots, const std::vector<Replica>& replicas,
-                          const std::vector<PackingSize>& sizes) {
-    const KernelBuild build{.precision = precision, .slots = slots};
+namespace {
+
+/// With the largest cell lists.
+FieldExtents max_extents(const KernelBuild& build, const std::vector<Replica>& replicas,
+                         const std::vector<PackingSize>& sizes) {
     std::uint64_t cells = 0;
     for (const PackingSize& size : sizes) cells += max_cells(size.grains);
-    return Fields::memory_of(field_extents(build, replicas, sizes, cells));
+    return field_extents(build, replicas, sizes, cells);
+}
+
+}  // namespace
+
+FieldMemory memory_needed(Precision precision, int slots, const std::vector<Replica>& replicas,
+                          const std::vector<PackingSize>& sizes) {
+    return Fields::memory_of(max_extents({.precision = precision, .slots = slots}, replicas, sizes));
 }
 
 void expect_within_limits(const DeviceInfo& device, const KernelBuild& build,
@@ -93,14 +102,13 @@ void expect_within_limits(const DeviceInfo& device, const KernelBuild& build,
     if (build.work_items() > device.largest_work_group)
         throw InputError(fmt::format("numerics.slots must be at most {} on {}, got {}",
                                      device.largest_work_group / 16 * 16, device.name, build.slots));
-    std::uint64_t cells = 0;
-    for (const PackingSize& size : sizes) cells += max_cells(size.grains);
-    const FieldExtents extents = field_extents(build, replicas, sizes, cells);
-    if (extents.grains * extents.slots >= max_int || cells > max_int)
+    const FieldExtents extents = max_extents(build, replicas, sizes);
+    if (extents.grains * extents.slots >= max_int || extents.cells > max_int)
         throw InputError(fmt::format(
             "packing.count and batch.replicas must leave at most {} slots and {} cells in one go, got {} and "
             "{}: {}",
-            max_int - 1, max_int, extents.grains * extents.slots, cells, remedy(replicas.size(), 0.5)));
+            max_int - 1, max_int, extents.grains * extents.slots, extents.cells,
+            remedy(replicas.size(), 0.5)));
     expect_room(device, Fields::memory_of(extents), replicas.size());
 }
 

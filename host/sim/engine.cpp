@@ -7,6 +7,7 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "core/expects.h"
 #include "core/stress.h"
 #include "scene/packing/true_grains.h"
 #include "sim/batch_limits.h"
@@ -82,32 +83,23 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
       replicas_(std::move(replicas)),
       layout_((expect_within_limits(device.info(), build_, replicas_, sizes_of(packings)),
                make_layout(packings, build_.block()))),
-      rebuild_(replicas_.size(), 1),
-      plate_moved_(replicas_.size(), 0),
-      plate_z_(replicas_.size(), 0),
-      strain_(replicas_.size(), Strain{}),
-      weight_work_(replicas_.size(), 0),
-      steps_made_(replicas_.size(), 0),
       device_replicas_(any_device_replicas(build_, replicas_, packings, layout_)),
       fields_(device,
               field_extents(build_, replicas_, sizes_of(packings),
                             std::visit([](const auto& all) { return total_cells(all); }, device_replicas_))),
       kernels_(device, build_) {
-    for (int r = 0; r < layout_.replicas(); ++r) {
-        time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));
-        shortening_.push_back(0);
-        extra_shortening_.push_back(0);
-        keeps_step_.push_back(0);
-        excess_compliance_.push_back(mcdem::excess_compliance(replicas_[r], packings[r].size()));
-        reach_.push_back(list_reach(replicas_[r], packings[r]));
-        std::visit(
-            [&](auto& all) {
+    expects(packings.size() == replicas_.size(), "each replica has a packing");
+    std::visit(
+        [&](auto& all) {
+            for (std::size_t r = 0; r < all.size(); ++r) {
                 all[r].slot_count = fields_.slot_count;
                 all[r].batch_size = layout_.replicas();
-                skin_.push_back(all[r].skin);
-            },
-            device_replicas_);
-    }
+                runs_.push_back({.time_step = mcdem::time_step(replicas_[r], packings[r]),
+                                 .skin = all[r].skin,
+                                 .reach = list_reach(replicas_[r], packings[r])});
+            }
+        },
+        device_replicas_);
     upload_materials();
     upload_packings(packings);
     start_springs(packings);
@@ -122,7 +114,8 @@ void Engine::upload_materials() {
 
 void Engine::upload_packings(const std::vector<Packing>& packings) {
     std::vector<double> values(reals_of_motion * layout_.grains(), 0.0);
-    for (int r = 0; r < layout_.replicas(); ++r)
+    for (int r = 0; r < layout_.replicas(); ++r) {
+        const auto excess = excess_compliance(replicas_[r], packings[r].size());
         for (int k = 0; k < layout_.grain_count[r]; ++k) {
             const int grain = layout_.order[r][k];
             double* at = &values[reals_of_motion * (layout_.first_grain[r] + k)];
@@ -132,9 +125,10 @@ void Engine::upload_packings(const std::vector<Packing>& packings) {
             for (int axis = 0; axis < 3 && !packings[r].angular_velocity.empty(); ++axis)
                 at[8 + axis] = packings[r].angular_velocity[grain][axis];
             at[3] = 0.5 * packings[r].diameter[grain];
-            at[7] = excess_compliance_[r][grain];
+            at[7] = excess[grain];
             at[11] = static_cast<double>(packings[r].species_of(grain));
         }
+    }
     for (auto& copy : fields_.motion.copies) write_reals(copy, 0, values);
     std::vector<double> tracks(reals_of_track * layout_.grains(), 0.0);
     for (std::size_t real = 7; real < tracks.size(); real += reals_of_track)
@@ -143,21 +137,21 @@ void Engine::upload_packings(const std::vector<Packing>& packings) {
 }
 
 double Engine::time_step(int replica) const {
-    return shortened(time_step_[replica],
-                     std::min(shortening_[replica] + extra_shortening_[replica], max_shortening));
+    const ReplicaRun& now = run(replica);
+    return shortened(now.time_step, std::min(now.shortening + now.extra_shortening, max_shortening));
 }
 
 bool Engine::shorten(int replica) {
-    if (shortening_[replica] + extra_shortening_[replica] >= max_shortening) return false;
-    extra_shortening_[replica] += 4;
+    ReplicaRun& now = run(replica);
+    if (now.shortening + now.extra_shortening >= max_shortening) return false;
+    now.extra_shortening += 4;
     return true;
 }
 
 /// Speed of the plate, or of a cell's motion between two grains at the reach of the list [m/s].
 double Engine::speed_of_walls(int replica, const StepInterval& interval) const {
-    const auto r = static_cast<std::size_t>(replica);
-    if (!is_cell(replicas_[r].box)) return std::abs(interval.plate_velocity);
-    return reach_[r] * velocity_gradient(interval.strain, interval.strain_rate).norm();
+    if (!is_cell(replicas_[static_cast<std::size_t>(replica)].box)) return std::abs(interval.plate_velocity);
+    return run(replica).reach * velocity_gradient(interval.strain, interval.strain_rate).norm();
 }
 
 int Engine::max_interval(int replica, const StepInterval& interval) const {
@@ -167,78 +161,86 @@ int Engine::max_interval(int replica, const StepInterval& interval) const {
 }
 
 double Engine::max_plate_move(int replica) const {
-    return plate_share * margin_of_walls(replicas_[static_cast<std::size_t>(replica)]) * skin_[replica];
+    return plate_share * margin_of_walls(replicas_[static_cast<std::size_t>(replica)]) * run(replica).skin;
 }
 
-Engine::Part Engine::part(const std::vector<char>& wanted) const {
-    Part part;
+template <class Wanted>
+Engine::Selection Engine::select(Wanted wanted) const {
+    Selection some;
     for (int r = 0; r < layout_.replicas(); ++r) {
-        if (!wanted[r]) continue;
-        part.replicas.push_back(r);
-        std::ranges::copy(layout_.blocks(r), std::back_inserter(part.blocks));
-        std::ranges::copy(layout_.portions(r), std::back_inserter(part.portions));
+        if (!wanted(run(r))) continue;
+        some.replicas.push_back(r);
+        std::ranges::copy(layout_.blocks(r), std::back_inserter(some.blocks));
+        std::ranges::copy(layout_.portions(r), std::back_inserter(some.portions));
     }
-    return part;
+    return some;
 }
 
-/// Uploads the lists of active replicas if they have changed.
-void Engine::choose(const std::vector<char>& active) {
-    if (active == active_) return;
-    active_ = active;
-    working_ = part(active);
+/// Uploads the lists of replicas that make steps, if they have changed. Returns false if there are none.
+bool Engine::activate_moving() {
+    bool changed = false, any = false;
+    for (int r = 0; r < layout_.replicas(); ++r) {
+        const bool active = intervals_[static_cast<std::size_t>(r)].steps > 0;
+        any |= active;
+        changed |= std::exchange(run(r).active, active) != active;
+    }
+    if (!changed || !any) return any;
+    working_ = select([](const ReplicaRun& one) { return one.active; });
     std::vector<Block> first_blocks;
     for (const int r : working_.replicas) first_blocks.push_back({r, layout_.first_grain[r]});
     fields_.first_blocks.write(first_blocks.data(), 0, first_blocks.size() * sizeof(Block));
     fields_.blocks.write(working_.blocks.data(), 0, working_.blocks.size() * sizeof(Block));
     fields_.portions.write(working_.portions.data(), 0, working_.portions.size() * sizeof(Portion));
+    return true;
 }
 
 void Engine::begin_interval(const std::vector<StepInterval>& intervals) {
+    expects(intervals.size() == replicas_.size(), "each replica has an interval");
+    for (const StepInterval& next : intervals)
+        expects(next.steps >= 0 && next.step_part > 0 && next.step_part <= 1,
+                "an interval has whole steps, not longer than the time step");
     intervals_ = intervals;
-    std::vector<char> active(layout_.replicas());
-    for (int r = 0; r < layout_.replicas(); ++r) active[r] = intervals[r].steps > 0;
-    if (std::ranges::count(active, 1) == 0) return;
-    choose(active);
-    upload_intervals(intervals);
-    find_neighbours(active);
+    if (!activate_moving()) return;
+    upload_intervals();
+    find_neighbours();
     make_steps();
     measure();
     fields_.reports.flush();
 }
 
-void Engine::upload_intervals(const std::vector<StepInterval>& intervals) {
+void Engine::upload_intervals() {
     std::vector<int> steps;
-    for (const auto& interval : intervals) steps.push_back(interval.steps);
+    for (const auto& interval : intervals_) steps.push_back(interval.steps);
     steps.push_back(0);  // no replica is taken yet
     fields_.stop_at.write(steps.data());
     std::visit(
         [&](auto& all) {
             for (std::size_t r = 0; r < all.size(); ++r) {
-                if (intervals[r].steps == 0) continue;
-                set_time_step(all[r], replicas_[r], time_step(static_cast<int>(r), intervals[r]));
+                const StepInterval& next = intervals_[r];
+                if (next.steps == 0) continue;
+                set_time_step(all[r], replicas_[r], time_step(static_cast<int>(r), next));
                 if (is_cell(replicas_[r].box)) {
-                    set_strain(all[r], replicas_[r], intervals[r].strain, intervals[r].strain_rate,
-                               rebuild_[r] ? reach_[r] : 0);
+                    set_strain(all[r], replicas_[r], next.strain, next.strain_rate,
+                               runs_[r].rebuild ? runs_[r].reach : 0);
                 } else {
-                    all[r].wall_position[5] = intervals[r].plate_z;
-                    all[r].plate_velocity = intervals[r].plate_velocity;
+                    all[r].wall_position[5] = next.plate_z;
+                    all[r].plate_velocity = next.plate_velocity;
                 }
-                all[r].steps_before = static_cast<int>(steps_made_[r] % 4);
-                all[r].drag = replicas_[r].grains.drag + intervals[r].settle_drag;
-                all[r].spin_drag = intervals[r].settle_drag;
+                all[r].steps_before = static_cast<int>(runs_[r].steps_made % 4);
+                all[r].drag = replicas_[r].grains.drag + next.settle_drag;
+                all[r].spin_drag = next.settle_drag;
             }
             fields_.replicas.write(all.data());
         },
         device_replicas_);
 }
 
-void Engine::find_neighbours(const std::vector<char>& active) {
-    std::vector<char> wanted(active);
-    for (int r = 0; r < layout_.replicas(); ++r) wanted[r] = active[r] && rebuild_[r];
-    const Part stale = part(wanted);
+void Engine::find_neighbours() {
+    const Selection stale = select([](const ReplicaRun& one) { return one.active && one.rebuild; });
     if (stale.replicas.empty()) return;
     const int blocks = static_cast<int>(stale.blocks.size());
-    const auto groups = [&](int items, int grains) {  // work-groups whose work-items have so many grains
+    const auto groups = [&](int items,
+                            int grains) {  // work-groups whose work-items have so many grains
         return (stale.blocks.size() * build_.block() + items * grains - 1) / (items * grains);
     };
     const std::size_t by_grain = groups(build_.list_items(), 1);
@@ -255,10 +257,9 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     if (f.has_displacements())
         kernels_.link_partner_slots(by_grain, blocks, f.slot_count, f.rebuilt_blocks, f.partner,
                                     f.partner_slot);
-    for (int r : stale.replicas) {
-        rebuild_[r] = 0;
-        plate_moved_[r] = 0;
-        weight_work_[r] = 0;
+    for (const int r : stale.replicas) {
+        run(r).rebuild = 0;
+        run(r).plate_moved = run(r).weight_work = 0;
     }
 }
 
@@ -298,8 +299,8 @@ void Engine::measure() {
                              f.partner, f.force, f.cell_moments);
 }
 
-/// Stresses of active replicas that are cells, at these strains.
-std::vector<Mat3> Engine::read_stresses(const std::vector<Strain>& strain) const {
+/// Stresses of active replicas that are cells, at their strains.
+std::vector<Mat3> Engine::read_stresses() const {
     std::vector<Mat3> stress(replicas_.size(), Mat3::Zero());
     if (!fields_.has_cells()) return stress;
     const auto moments = read_reals(fields_.cell_moments, 0, 9 * working_.portions.size());
@@ -309,18 +310,17 @@ std::vector<Mat3> Engine::read_stresses(const std::vector<Strain>& strain) const
                 moments[9 * p + q];
     for (const int replica : working_.replicas) {
         const auto r = static_cast<std::size_t>(replica);
-        const Box now = deformed(replicas_[r].box, strain[r]);
+        const Box now = deformed(replicas_[r].box, runs_[r].strain);
         stress[r] /= floor_area(now) * now.height;
     }
     return stress;
 }
 
 std::vector<IntervalResult> Engine::finish_interval() {
-    const std::vector<StepInterval>& intervals = intervals_;
-    std::vector<IntervalResult> results(layout_.replicas());
-    if (std::ranges::all_of(intervals, [](const auto& interval) { return interval.steps == 0; }))
+    std::vector<IntervalResult> results(replicas_.size());
+    if (std::ranges::all_of(intervals_, [](const auto& interval) { return interval.steps == 0; }))
         return results;
-    std::vector<int> made(layout_.replicas() + 1);
+    std::vector<int> made(replicas_.size() + 1);
     fields_.stop_at.read(made.data());
     std::visit(
         [&]<class DeviceReplica>(const std::vector<DeviceReplica>&) {
@@ -329,41 +329,43 @@ std::vector<IntervalResult> Engine::finish_interval() {
             std::vector<Report> found(working_.portions.size());
             fields_.reports.read(found.data(), 0, found.size() * sizeof(Report));
             const auto reports = by_replica(working_.portions, found, layout_.replicas());
-            for (int r = 0; r < layout_.replicas(); ++r) {
-                if (intervals[r].steps == 0) continue;
-                const double duration = time_step(r, intervals[r]) * made[r];
-                for (std::size_t k = 0; k < strain_[r].size(); ++k)
-                    strain_[r][k] = intervals[r].strain[k] + duration * intervals[r].strain_rate[k];
-            }
-            const auto stresses = read_stresses(strain_);
-            for (int r = 0; r < layout_.replicas(); ++r) {
-                if (intervals[r].steps == 0) continue;
-                auto& result = results[r] = to_result(reports[r]);
-                result.steps = made[r];
-                result.weight_work =
-                    reports[r].weight_work - std::exchange(weight_work_[r], reports[r].weight_work);
-                if (is_cell(replicas_[r].box)) {
-                    result.stress = stresses[r];
-                    result.wall_force = face_forces(deformed(replicas_[r].box, strain_[r]), stresses[r]);
-                }
-                if (result.failed_grain >= 0)
-                    result.failed_grain = layout_.order[r][result.failed_grain - layout_.first_grain[r]];
-                const double step = time_step(r, intervals[r]);
-                const double plate_move = intervals[r].plate_velocity * step * made[r];
-                plate_moved_[r] += speed_of_walls(r, intervals[r]) * step * made[r];
-                steps_made_[r] += made[r];
-                plate_z_[r] = intervals[r].plate_z + plate_move;
-                const double limit = rebuild_at * skin_[r];
-                const double own_limit = is_cell(replicas_[r].box) ? (1 - cell_share) * limit : limit;
-                rebuild_[r] = made[r] < intervals[r].steps ||
-                              plate_moved_[r] > margin_of_walls(replicas_[r]) * limit ||
-                              !(reports[r].moved_squared <= own_limit * own_limit);
-                if (!keeps_step_[r])
-                    shortening_[r] = shortening(time_step_[r], result.step_rate, shortening_[r]);
+            for (const int replica : working_.replicas) {
+                const auto r = static_cast<std::size_t>(replica);
+                results[r] = to_result(reports[r]);
+                results[r].steps = made[r];
+                record(replica, results[r], reports[r].moved_squared);
             }
         },
         device_replicas_);
+    const auto stresses = read_stresses();
+    for (const int replica : working_.replicas) {
+        const auto r = static_cast<std::size_t>(replica);
+        if (!is_cell(replicas_[r].box)) continue;
+        results[r].stress = stresses[r];
+        results[r].wall_force = face_forces(deformed(replicas_[r].box, runs_[r].strain), stresses[r]);
+    }
     return results;
+}
+
+/// Notes where the interval has ended, whether the neighbour list is still valid, and the next time step.
+void Engine::record(int replica, IntervalResult& result, double moved_squared) {
+    ReplicaRun& now = run(replica);
+    const Replica& scene = replicas_[static_cast<std::size_t>(replica)];
+    const StepInterval& interval = intervals_[static_cast<std::size_t>(replica)];
+    const double step = time_step(replica, interval), duration = step * result.steps;
+    for (std::size_t k = 0; k < now.strain.size(); ++k)
+        now.strain[k] = interval.strain[k] + duration * interval.strain_rate[k];
+    result.weight_work -= std::exchange(now.weight_work, result.weight_work);
+    if (result.failed_grain >= 0)
+        result.failed_grain = layout_.order[replica][result.failed_grain - layout_.first_grain[replica]];
+    now.plate_moved += speed_of_walls(replica, interval) * step * result.steps;
+    now.plate_z = interval.plate_z + interval.plate_velocity * step * result.steps;
+    now.steps_made += result.steps;
+    const double limit = rebuild_at * now.skin;
+    const double own_limit = is_cell(scene.box) ? (1 - cell_share) * limit : limit;
+    now.rebuild = result.steps < interval.steps || now.plate_moved > margin_of_walls(scene) * limit ||
+                  !(moved_squared <= own_limit * own_limit);
+    if (!now.keeps_step) now.shortening = shortening(now.time_step, result.step_rate, now.shortening);
 }
 
 }  // namespace mcdem::sim

@@ -132,7 +132,7 @@ public:
     ReplicaState state(int replica) const;
     Precision precision() const { return build_.precision; }
     /// For tests: the time step of the replica is not shortened from now on.
-    void keep_time_step(int replica) { keeps_step_[static_cast<std::size_t>(replica)] = 1; }
+    void keep_time_step(int replica) { run(replica).keeps_step = true; }
     /// For tests: sets velocities by the user's grain numbers.
     void set_velocities(int replica, const std::vector<Vec3>& velocity,
                         const std::vector<Vec3>& angular_velocity);
@@ -148,24 +148,57 @@ public:
     void restore(const std::map<std::string, std::vector<std::byte>>& saved);
 
 private:
-    /// A subset of the replicas, and the blocks and portions of their grains.
-    struct Part {
+    /// What the host keeps of a replica besides its scene.
+    struct ReplicaRun {
+        double time_step;         ///< of the scene [s]
+        double skin;              ///< margin of the neighbour list [m]
+        double reach;             ///< largest distance between centres in the list [m]
+        bool keeps_step = false;  ///< by keep_time_step()
+        bool active = false;      ///< in `working_`
+        double plate_z = 0;       ///< at the end of the last interval [m]
+        // In checkpoints:
+        char rebuild = 1;        ///< 1: the neighbour list must be rebuilt
+        double plate_moved = 0;  ///< since the list was built; for a cell, at its ends [m]
+        Strain strain{};         ///< of a cell, at the end of the last interval
+        long steps_made = 0;
+        int shortening = 0;        ///< of the time step (device_replica.h)
+        int extra_shortening = 0;  ///< of it, by shorten()
+        double weight_work = 0;    ///< of the weight since the list was built [J]
+        /// Calls visit(name, member) for each value of a replica that a checkpoint contains.
+        template <class Visit>
+        static void visit_saved(Visit visit) {
+            visit("rebuild", &ReplicaRun::rebuild);
+            visit("plate_moved", &ReplicaRun::plate_moved);
+            visit("strain", &ReplicaRun::strain);
+            visit("steps_made", &ReplicaRun::steps_made);
+            visit("shortening", &ReplicaRun::shortening);
+            visit("extra_shortening", &ReplicaRun::extra_shortening);
+            visit("weight_work", &ReplicaRun::weight_work);
+        }
+    };
+
+    /// Some replicas, and the blocks and portions of their grains.
+    struct Selection {
         std::vector<int> replicas;
         std::vector<Block> blocks;
         std::vector<Portion> portions;
     };
-    Part part(const std::vector<char>& wanted) const;
+    template <class Wanted>
+    Selection select(Wanted wanted) const;
     void upload_materials();
     void upload_packings(const std::vector<Packing>& packings);
     void start_springs(const std::vector<Packing>& packings);
     void write_springs(int replica, const std::vector<TangentialForce>& tangential);
+    ReplicaRun& run(int replica) { return runs_[static_cast<std::size_t>(replica)]; }
+    const ReplicaRun& run(int replica) const { return runs_[static_cast<std::size_t>(replica)]; }
     double speed_of_walls(int replica, const StepInterval& interval) const;
-    void choose(const std::vector<char>& active);
-    void upload_intervals(const std::vector<StepInterval>& intervals);
-    void find_neighbours(const std::vector<char>& active);
+    bool activate_moving();
+    void upload_intervals();
+    void find_neighbours();
     void make_steps();
     void measure();
-    std::vector<Mat3> read_stresses(const std::vector<Strain>& strain) const;
+    std::vector<Mat3> read_stresses() const;
+    void record(int replica, IntervalResult& result, double moved_squared);
     template <class Quantity>
     std::vector<double> read_reals(const Field<Quantity>& field, std::size_t first, std::size_t count) const;
     template <class Quantity>
@@ -187,21 +220,8 @@ private:
     std::size_t enough_replicas_;  ///< see enough_replicas()
     std::vector<Replica> replicas_;
     Layout layout_;
-    std::vector<double> time_step_;                       ///< of the scene [s]
-    std::vector<int> shortening_;                         ///< of the time step (device_replica.h)
-    std::vector<int> extra_shortening_;                   ///< of it, by shorten()
-    std::vector<char> keeps_step_;                        ///< by keep_time_step()
-    std::vector<double> skin_;                            ///< [m]
-    std::vector<std::vector<double>> excess_compliance_;  ///< E/E_i - 1 by the user's grain numbers
-    std::vector<char> rebuild_;                           ///< 1: the neighbour list must be rebuilt
-    std::vector<double> reach_;        ///< largest distance between centres in the list [m]
-    std::vector<double> plate_moved_;  ///< since the list was built; for a cell, at its ends [m]
-    std::vector<double> plate_z_;      ///< at the end of the last interval [m]
-    std::vector<Strain> strain_;       ///< of a cell, at the end of the last interval
-    std::vector<double> weight_work_;  ///< of the weight since the list was built [J]
-    std::vector<long> steps_made_;
-    std::vector<char> active_;             ///< whether a replica is in working_
-    Part working_;                         ///< the active replicas, as uploaded to the device
+    std::vector<ReplicaRun> runs_;
+    Selection working_;                    ///< the active replicas, as uploaded to the device
     std::vector<StepInterval> intervals_;  ///< the last ones that were begun
     std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> device_replicas_;
     Fields fields_;

@@ -8,22 +8,22 @@
 namespace mcdem::inline sim {
 
 GrainForces Engine::forces_at(int replica, const GrainMotion& motion, double duration) {
-    if (duration > 0) time_step_[replica] = duration;
-    shortening_[replica] = 0;
-    plate_z_[replica] = replicas_[replica].plate.start;
+    ReplicaRun& now = run(replica);
+    if (duration > 0) now.time_step = duration;
+    now.shortening = 0;
+    now.rebuild = 1;
+    now.plate_z = replicas_[replica].plate.start;
     intervals_.assign(replicas_.size(), {});
     intervals_[replica].steps = 1;
-    intervals_[replica].plate_z = plate_z_[replica];
-    std::vector<char> active(replicas_.size(), 0);
-    active[replica] = rebuild_[replica] = 1;
-    choose(active);
+    intervals_[replica].plate_z = now.plate_z;
+    activate_moving();
     write_motion(replica, motion);
     fields_.status.write(std::vector<int>(static_cast<std::size_t>(layout_.grains()), 0).data());
-    upload_intervals(intervals_);
-    find_neighbours(active);
+    upload_intervals();
+    find_neighbours();
     if (duration > 0) {
         make_steps();
-        ++steps_made_[replica];
+        ++now.steps_made;
         write_motion(replica, motion);  // the step has moved the grains
     }
     measure();

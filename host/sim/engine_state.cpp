@@ -7,6 +7,7 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "core/expects.h"
 #include "core/in_parallel.h"
 #include "scene/plate_face.h"
 #include "sim/batch_limits.h"
@@ -131,6 +132,7 @@ Readings Engine::begin_reading(int first_replica, int last_replica) const {
 }
 
 std::vector<Readings> Engine::begin_reading(const std::vector<int>& replicas) const {
+    expects(std::ranges::is_sorted(replicas), "replicas are read in ascending order");
     std::vector<Readings> read;
     for (std::size_t begin = 0, end; begin < replicas.size(); begin = end) {
         end = begin + 1;
@@ -163,7 +165,7 @@ ReplicaState Engine::state(int replica, const Readings& read) const {
     ReplicaState state;
     state.position = by_grain(motion, 0, order);
     if (is_cell(replicas_[replica].box))
-        for (Vec3& x : state.position) x = deformation(strain_[replica]) * x;
+        for (Vec3& x : state.position) x = deformation(run(replica).strain) * x;
     state.velocity = by_grain(motion, 4, order);
     state.angular_velocity = by_grain(motion, 8, order);
     state.rotation =
@@ -174,14 +176,14 @@ ReplicaState Engine::state(int replica, const Readings& read) const {
 
 /// Unit vector from the centre of a grain to its partner, a number as in the field Partner.
 Vec3 Engine::direction(int replica, const std::vector<Vec3>& position, int grain, int partner) const {
-    const Box box = deformed(replicas_[replica].box, strain_[replica]);
+    const Box box = deformed(replicas_[replica].box, run(replica).strain);
     if (partner >= 0) {
         const int other = layout_.order[replica][partner - layout_.first_grain[replica]];
         return apart(box, position[grain], position[other]).normalized();
     }
     const int wall = WALL_PARTNER(0) - partner;
     if (static_cast<Wall>(wall) == Wall::plate)
-        return plate_face(replicas_[replica], plate_z_[replica]).normal();
+        return plate_face(replicas_[replica], run(replica).plate_z).normal();
     if (is_cylinder(box) && static_cast<Wall>(wall) == curved_wall)
         return from_axis(box, position[grain]).normalized();
     return (wall % 2 ? 1 : -1) * Vec3::Unit(wall / 2);
@@ -200,7 +202,7 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
                arm = reals(read.arm, first, count);
     const std::size_t row = build_.lanes * slots;  // length of a row of forces, see kernels/measure.cl
     const int* const partner = reinterpret_cast<const int*>(read.partner.data()) + first;
-    const PlateFace plate = plate_face(replicas_[replica], plate_z_[replica]);
+    const PlateFace plate = plate_face(replicas_[replica], run(replica).plate_z);
     std::vector<Contact> found;
     for (std::size_t slot = 0; slot < count; ++slot) {
         if (!(overlap[slot] > 0)) continue;
@@ -296,17 +298,12 @@ std::map<std::string, std::vector<std::byte>> Engine::save() {
         bytes.resize(field.bytes());
         field.read(bytes.data());
     });
-    const auto keep = [&](const char* name, const auto& values) {
-        const auto* begin = reinterpret_cast<const std::byte*>(values.data());
-        saved[name].assign(begin, begin + values.size() * sizeof(values[0]));
-    };
-    keep("rebuild", rebuild_);
-    keep("plate_moved", plate_moved_);
-    keep("strain", strain_);
-    keep("steps_made", steps_made_);
-    keep("shortening", shortening_);
-    keep("extra_shortening", extra_shortening_);
-    keep("weight_work", weight_work_);
+    ReplicaRun::visit_saved([&](const char* name, auto member) {
+        for (const ReplicaRun& one : runs_) {
+            const auto* begin = reinterpret_cast<const std::byte*>(&(one.*member));
+            saved[name].insert(saved[name].end(), begin, begin + sizeof(one.*member));
+        }
+    });
     return saved;
 }
 
@@ -315,7 +312,8 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
         const auto found = saved.find(name);
         if (found == saved.end() || found->second.size() != size)
             throw RunError(
-                fmt::format("the checkpoint does not belong to this scene: '{}' must have {} bytes, has {}",
+                fmt::format("the checkpoint does not belong to this scene: '{}' must have {} "
+                            "bytes, has {}",
                             name, size, found == saved.end() ? 0 : found->second.size()));
         return found->second.data();
     };
@@ -324,22 +322,20 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
         expect_partner_slots(fields_.slot_count, bytes_of("partner_slot", fields_.partner_slot.bytes()),
                              fields_.partner_slot.bytes());
     fields_.visit_state([&](const char* name, auto& field) { field.write(bytes_of(name, field.bytes())); });
-    const auto bring_back = [&](const char* name, auto& values) {
-        const std::size_t size = values.size() * sizeof(values[0]);
-        std::memcpy(values.data(), bytes_of(name, size), size);
-    };
-    bring_back("rebuild", rebuild_);
-    bring_back("plate_moved", plate_moved_);
-    bring_back("strain", strain_);
-    bring_back("steps_made", steps_made_);
-    bring_back("shortening", shortening_);
-    bring_back("extra_shortening", extra_shortening_);
-    bring_back("weight_work", weight_work_);
-    if (!std::ranges::all_of(steps_made_, [](auto steps) { return steps >= 0; }))
-        refuse_checkpoint("it holds a negative number of steps");
+    ReplicaRun::visit_saved([&](const char* name, auto member) {
+        const std::size_t size = sizeof(runs_.front().*member);
+        const std::byte* next = bytes_of(name, runs_.size() * size);
+        for (ReplicaRun& one : runs_) {
+            std::memcpy(&(one.*member), next, size);
+            next += size;
+        }
+    });
     const auto possible = [](int times) { return times >= 0 && times <= max_shortening + 4; };
-    if (!std::ranges::all_of(shortening_, possible) || !std::ranges::all_of(extra_shortening_, possible))
-        refuse_checkpoint("it holds an invalid time step");
+    for (const ReplicaRun& one : runs_) {
+        if (one.steps_made < 0) refuse_checkpoint("it holds a negative number of steps");
+        if (!possible(one.shortening) || !possible(one.extra_shortening))
+            refuse_checkpoint("it holds an invalid time step");
+    }
 }
 
 }  // namespace mcdem::sim

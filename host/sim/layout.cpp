@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "core/expects.h"
+
 namespace mcdem::inline sim {
 namespace {
 
@@ -49,11 +51,13 @@ std::vector<Portion> Layout::portions(int replica) const {
 std::uint64_t portion_count(std::uint64_t grains) { return (grains + PORTION_GRAINS - 1) / PORTION_GRAINS; }
 
 Layout make_layout(const std::vector<Packing>& packings, int block) {
+    expects(block > 0 && !packings.empty(), "a layout has replicas and blocks");
     Layout layout;
     layout.block = block;
     layout.first_grain.push_back(0);
     for (const auto& packing : packings) {
         const int count = static_cast<int>(packing.size());
+        expects(count > 0, "a replica has grains");
         const int blocks = (count + block - 1) / block;
         layout.grain_count.push_back(count);
         layout.first_grain.push_back(layout.first_grain.back() + blocks * block);

@@ -125,30 +125,7 @@ TEST(Bits, TheNumberOfSlotsChangesNothing) {
     for (int r = 0; r < 4; ++r) expect_same(few, r, more, r);
 }
 
-TEST(Bits, TwoFreshRunsAreTheSame) {
-    WholeRun one(Precision::single_precision, starts({0, 1, 2, 3})),
-        other(Precision::single_precision, starts({0, 1, 2, 3}));
-    one.finish();
-    other.finish();
-    for (int r = 0; r < 4; ++r) expect_same(one, r, other, r);
-}
-
-// Saves at several moments, restores into a new simulation, runs to the end.
-TEST(Bits, ARestartChangesNothing) {
-    const auto kinds = starts({0, with_species, 5});
-    WholeRun whole(Precision::single_precision, kinds);
-    whole.finish();
-    for (int rounds : {0, 1, 2, 7, 25}) {
-        WholeRun first(Precision::single_precision, kinds), second(Precision::single_precision, kinds);
-        first.advance(rounds);
-        const auto saved = first.save();
-        second.restore(saved);
-        second.told = first.told;
-        EXPECT_TRUE(second.save() == first.save()) << "after " << rounds << " rounds";
-        second.finish();
-        for (int r = 0; r < 3; ++r) expect_same(whole, r, second, r);
-    }
-}
+TEST(Bits, ARestartChangesNothing) { expect_same_after_restarts(starts({0, with_species, 5})); }
 
 TEST(Bits, ACheckpointOfAnotherSceneIsRefused) {
     WholeRun one(Precision::single_precision, starts({0, 1})),

@@ -310,37 +310,8 @@ TEST(Containers, ConserveEnergy) {
     for (int r = 0; r < 2; ++r) EXPECT_LT(drift[r] / most[r], 0.02) << r;
 }
 
-Start squeezed(Start start) {
-    start.replica.plate.speed = 0.2;
-    start.replica.protocol.scans_per_stroke = 2;
-    start.replica.protocol.relax_time = start.replica.protocol.settle_time = 0.03;
-    return start;
-}
-
-// Boxes, cylinders and periodic containers in one batch.
-TEST(Containers, AReplicaIsTheSameAloneInABatchAndAfterARestart) {
-    Replica replica = test_replica(ContactModel::mc_dem);
-    replica.contact.friction_law = FrictionLaw::mindlin;
-    const std::vector<Start> starts{squeezed(rings_in_a_cylinder(replica, 2, 1)),
-                                    squeezed(jittered_lattice(replica, 27, 2)),
-                                    squeezed(periodic_lattice(replica, 3, 2, 3))};
-    WholeRun batch(Precision::single_precision, starts);
-    batch.finish();
-    for (int r = 0; r < 3; ++r) {
-        WholeRun alone(Precision::single_precision, {starts[static_cast<std::size_t>(r)]});
-        alone.finish();
-        expect_same(alone, 0, batch, r);
-    }
-    WholeRun first(Precision::single_precision, starts), second(Precision::single_precision, starts);
-    first.advance(9);
-    second.restore(first.save());
-    second.told = first.told;
-    second.finish();
-    for (int r = 0; r < 3; ++r) expect_same(batch, r, second, r);
-}
-
 TEST(PeriodicCell, IsRefusedIfGrainsCouldTouchTwice) {
-    Start start = squeezed(periodic_lattice(test_replica(), 3, 2, 3));
+    Start start = periodic_lattice(test_replica(), 3, 2, 3);
     start.replica.numerics.skin = 0.7;
     try {
         WholeRun run(Precision::single_precision, {start});

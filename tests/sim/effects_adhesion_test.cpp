@@ -57,8 +57,8 @@ TEST(Adhesion, DecreasesToZeroInAGapOfAHundredthOfTheRadius) {
     SqueezedGrain grain(adhesive(), 1e-4);
     const double most = pull_off(radius), range = 0.01 * radius, step = 1e-6;
     double before = grain.squeeze(0);
-    for (int k = 0; k < 300; ++k) {
-        const double force = grain.squeeze(-step), gap = -grain.overlap();
+    for (const auto& [overlap, force, energy, work] : grain.path(-300 * step, 300)) {
+        const double gap = -overlap;
         const double expected = SqueezedGrain::hertz(-gap) - most * std::clamp(1 - gap / range, 0.0, 1.0);
         EXPECT_NEAR(force, expected, 1e-4 * most) << gap;
         if (gap > 0) {
@@ -73,14 +73,8 @@ TEST(Adhesion, DecreasesToZeroInAGapOfAHundredthOfTheRadius) {
 // work; it is zero beyond the range.
 TEST(Adhesion, EnergyIsTheWorkDone) {
     SqueezedGrain grain(adhesive(), -1.5 * 0.01 * radius);
-    double work = 0, before = 0;
-    const double step = 2e-6;
-    for (int k = 0; k < 200; ++k) {
-        const double force = grain.squeeze(step);
-        work += (force + before) / 2 * 2 * step;
-        before = force;
-        EXPECT_NEAR(grain.energy(), work, 2e-3 * pull_off(radius) * 0.01 * radius) << grain.overlap();
-    }
+    for (const auto& [overlap, force, energy, work] : grain.path(400e-6, 200))
+        EXPECT_NEAR(energy, work, 2e-3 * pull_off(radius) * 0.01 * radius) << overlap;
     EXPECT_GT(grain.overlap(), 2e-4);
 }
 
@@ -132,14 +126,10 @@ TEST(Cohesion, AttractsInProportionToTheAreaOfIntersection) {
     mcdem::Effects effects;
     effects.cohesion = 5000;
     SqueezedGrain grain(effects, 0);
-    double work = 0, before = 0;
-    for (int k = 0; k < 200; ++k) {
-        const double force = grain.squeeze(step), overlap = grain.overlap();
+    for (const auto& [overlap, force, energy, work] : grain.path(most, 200)) {
         EXPECT_NEAR(force, SqueezedGrain::hertz(overlap) - per_overlap * overlap, 1e-4 * per_overlap * most)
             << overlap;
-        work += (force + before) / 2 * 2 * step;
-        before = force;
-        EXPECT_NEAR(grain.energy(), work, 1e-3 * per_overlap * most * most) << overlap;
+        EXPECT_NEAR(energy, work, 1e-3 * per_overlap * most * most) << overlap;
     }
 }
 

@@ -22,16 +22,13 @@ mcdem::Effects plasticity(double part) {
 /// error of about 1e-5.
 void expect_law(double amount, double (*factor)(double), double energy_error) {
     SqueezedGrain grain(stiffening(amount), 0);
-    double work = 0, before = 0;
-    for (int step = 0; step < 200; ++step) {
-        const double force = grain.squeeze(deepest / 200), overlap = grain.overlap();
+    const auto path = grain.path(deepest, 200);
+    for (const auto& [overlap, force, energy, work] : path) {
         const double expected =
             SqueezedGrain::hertz(overlap) * factor(amount * overlap / SqueezedGrain::radius);
         EXPECT_NEAR(force / expected, 1, 10 * SqueezedGrain::rounding()) << overlap;
-        work += (force + before) / 2 * 2 * deepest / 200;
-        before = force;
     }
-    EXPECT_NEAR(grain.energy() / work, 1, energy_error) << amount;
+    EXPECT_NEAR(path.back().energy / path.back().work, 1, energy_error) << amount;
 }
 
 TEST(Stiffening, MultipliesTheHertzForceByOnePlusOverlapOverRadius) {
@@ -47,38 +44,19 @@ TEST(Stiffening, NegativeValuesDivide) {
             amount, [](double x) { return 1 / (1 - x); }, 0.03);
 }
 
-struct Point {
-    double overlap, force;
-};
-
 /// Loading and unloading in steps of a hundredth of `deepest`.
-std::vector<Point> go(SqueezedGrain& grain, double target) {
-    std::vector<Point> curve;
-    const int steps = static_cast<int>(std::lround(100 * std::abs(target - grain.overlap()) / deepest));
-    const double change = (target - grain.overlap()) / steps;
-    for (int step = 0; step < steps; ++step) {
-        const double force = grain.squeeze(change);
-        curve.push_back({grain.overlap(), force});
-    }
-    return curve;
-}
-
-double work(const std::vector<Point>& curve, Point before) {
-    double sum = 0;
-    for (const Point& point : curve) {
-        sum += (point.force + before.force) / 2 * (point.overlap - before.overlap);
-        before = point;
-    }
-    return sum;
+std::vector<SqueezedGrain::Point> go(SqueezedGrain& grain, double target) {
+    const double change = target - grain.overlap();
+    return grain.path(change, static_cast<int>(std::lround(100 * std::abs(change) / deepest)));
 }
 
 TEST(Plasticity, UnloadsAlongASteeperHertzCurve) {
     for (double part : {0.1, 0.5}) {
         SqueezedGrain grain(plasticity(part), 0);
-        for (const Point& p : go(grain, deepest))
+        for (const auto& p : go(grain, deepest))
             EXPECT_NEAR(p.force / SqueezedGrain::hertz(p.overlap), 1, 10 * SqueezedGrain::rounding());
         const double residual = part * deepest;
-        for (const Point& p : go(grain, 0)) {
+        for (const auto& p : go(grain, 0)) {
             const double left = std::max(0.0, (p.overlap - residual) / (deepest - residual));
             EXPECT_NEAR(p.force / SqueezedGrain::hertz(deepest), std::pow(left, 1.5),
                         10 * SqueezedGrain::rounding());
@@ -92,11 +70,10 @@ TEST(Plasticity, LoopAreaIsThePlasticPartOfTheWork) {
     for (double part : {0.1, 0.5}) {
         SqueezedGrain grain(plasticity(part), 0);
         const double force = SqueezedGrain::hertz(deepest);
-        const double in = work(go(grain, deepest), {0, 0});
-        EXPECT_NEAR(grain.energy() / (2 * (1 - part) * 0.4 * force * deepest), 1, 1e-4)
-            << "what can be got back";
-        const double back = work(go(grain, 0), {deepest, force});
-        EXPECT_NEAR((in + back) / (part * 0.4 * force * deepest), 1, 1e-3);
+        const auto in = go(grain, deepest).back();
+        EXPECT_NEAR(in.energy / (2 * (1 - part) * 0.4 * force * deepest), 1, 1e-4) << "what can be got back";
+        const double back = go(grain, 0).back().work;
+        EXPECT_NEAR((in.work + back) / (2 * part * 0.4 * force * deepest), 1, 1e-3);
     }
 }
 
@@ -106,7 +83,7 @@ TEST(Plasticity, ReloadsAlongTheUnloadingCurveThenFollowsHertz) {
     const auto down = go(grain, 0.2 * deepest), up = go(grain, deepest);
     for (std::size_t k = 0; k + 1 < up.size(); ++k)
         EXPECT_NEAR(up[k].force, down[down.size() - 2 - k].force, 1e-6 * SqueezedGrain::hertz(deepest));
-    for (const Point& p : go(grain, 1.5 * deepest))
+    for (const auto& p : go(grain, 1.5 * deepest))
         EXPECT_NEAR(p.force / SqueezedGrain::hertz(p.overlap), 1, 10 * SqueezedGrain::rounding());
 }
 

@@ -1,6 +1,6 @@
 // Tilted plate, compliant plate.
 #include "sim/compliant_plate.h"
-#include "sim/simulation.h"
+#include "sim/simulated.h"
 #include "sim/squeezed_grain.h"
 
 namespace reference::effects_plate {
@@ -89,12 +89,7 @@ std::vector<mcdem::Scan> scans(const Replica& replica, int count = 1) {
     scene.replicas[0].protocol.settle_unbalanced_force = 1e-6;
     scene.replicas[0].box = {2.2 * radius, 2.2 * radius};
     const Packing packing{{{1.1 * radius, 1.1 * radius, replica.plate.start / 2}}, {2 * radius}};
-    mcdem::Simulation simulation(device(), scene, {packing});
-    std::vector<mcdem::Scan> all;
-    while (simulation.advance([&](int, const mcdem::Scan& scan) { all.push_back(scan); },
-                              [](int, const mcdem::Failure& failure) { ADD_FAILURE() << failure.cause; })) {
-    }
-    return all;
+    return simulated(scene, packing).scans[0];
 }
 
 // At rest, force and position solve z = commanded z + C F, F = F_H(R - z/2); C dF/dz is up to 12. A scan
@@ -199,9 +194,9 @@ TEST(PlateCompliance, NoScanBeforeThePlateArrives) {
     still.steps = 60;
     still.elastic_energy = 1;
     for (int k = 0; k < 5; ++k) runner.on_interval_done(still, false);
-    EXPECT_EQ(runner.state().stage, mcdem::ProtocolState::Stage::relax);
+    EXPECT_EQ(runner.state().activity, mcdem::Activity::relax);
     for (int k = 0; k < 2; ++k) runner.on_interval_done(still, true);
-    EXPECT_EQ(runner.state().stage, mcdem::ProtocolState::Stage::move);
+    EXPECT_EQ(runner.state().activity, mcdem::Activity::move);
 }
 
 TEST(PlateCompliance, RigidPlateIsUnchanged) {

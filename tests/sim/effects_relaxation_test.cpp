@@ -57,12 +57,11 @@ TEST(Relaxation, ForceOfARampIsTheIntegralOverItsHistory) {
 // If the grain is withdrawn faster than the contact recovers, the force is zero, not attractive.
 TEST(Relaxation, DoesNotPull) {
     SqueezedGrain grain(relaxing(0.9, time_constant), overlap);
-    for (int step = 0; step < 200; ++step) grain.squeeze(0);
+    grain.path(0, 200);
     bool let_go = false;
-    for (int step = 0; step < 20; ++step) {
-        const double force = grain.squeeze(-overlap / 20);
-        EXPECT_GE(force, 0) << step;
-        let_go |= force == 0 && grain.overlap() > 0.1 * overlap;
+    for (const auto& point : grain.path(-overlap, 20)) {
+        EXPECT_GE(point.force, 0) << point.overlap;
+        let_go |= point.force == 0 && point.overlap > 0.1 * overlap;
     }
     EXPECT_TRUE(let_go);
 }
@@ -70,10 +69,10 @@ TEST(Relaxation, DoesNotPull) {
 // The relaxed part recovers without contact, with the same time constant.
 TEST(Relaxation, RecoversWithoutContact) {
     SqueezedGrain grain(relaxing(part, time_constant), overlap);
-    for (int step = 0; step < 2000; ++step) grain.squeeze(0);
+    grain.path(0, 2000);
     grain.squeeze(-1.01 * overlap);
     const int steps = static_cast<int>(time_constant / grain.time_step());
-    for (int step = 1; step < steps; ++step) EXPECT_EQ(grain.squeeze(0), 0);
+    for (const auto& point : grain.path(0, steps - 1)) EXPECT_EQ(point.force, 0);
     const double force = grain.squeeze(1.01 * overlap);
     const double left = std::exp(-steps * grain.time_step() / time_constant);
     EXPECT_NEAR(force / SqueezedGrain::hertz(overlap), 1 - part * left, 100 * SqueezedGrain::rounding());

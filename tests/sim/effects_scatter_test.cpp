@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "scene/packing/true_grains.h"
-#include "sim/simulation.h"
+#include "sim/simulated.h"
 #include "sim/squeezed_grain.h"
 
 namespace reference {
@@ -97,15 +97,11 @@ TEST(TrueDiameter, LargerTrueDiameterIncreasesTheForce) {
     scene.precision = finest();
     scene.replicas = {replica};
     const Packing stated{{{3 * radius, 3 * radius, radius}}, {2 * radius}};
-    mcdem::Simulation simulation(device(), scene, {stated});
-    std::vector<double> forces;
-    while (simulation.advance([&](int, const mcdem::Scan& scan) { forces.push_back(scan.top_force()); },
-                              [](int, const mcdem::Failure& failure) { ADD_FAILURE() << failure.cause; })) {
-    }
-    ASSERT_EQ(forces.size(), 2u);
+    const auto scans = simulated(scene, stated).scans[0];
+    ASSERT_EQ(scans.size(), 2u);
     const double truly = overlap + error / 2;
     const double expected = SqueezedGrain::hertz(truly) * std::sqrt((radius + error / 2) / radius);
-    EXPECT_NEAR(forces[0] / expected, 1, 1e-3);
+    EXPECT_NEAR(scans[0].top_force() / expected, 1, 1e-3);
     EXPECT_EQ(mcdem::begin_recording(replica, stated).diameter, stated.diameter);
 }
 

@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "core/names.h"
-#include "reference/test_scene.h"
-#include "sim/simulation.h"
+#include "sim/simulated.h"
 
 namespace reference {
 namespace {
@@ -138,24 +137,17 @@ mcdem::Scene short_scene(const std::vector<Start>& starts) {
 TEST(Failure, SimulationNamesReplicaGrainStepAndCause) {
     const std::vector<Start> starts{squeezed(ContactModel::mc_dem, 1.125, 0.05, 2),
                                     squeezed(ContactModel::mc_dem, 3, 0.15, 5)};
-    mcdem::Simulation simulation(device(), short_scene(starts), {starts[0].packing, starts[1].packing});
-    std::vector<int> scans(2, 0);
-    std::vector<std::pair<int, mcdem::Failure>> failures;
-    while (simulation.advance(
-        [&](int r, const mcdem::Scan&) { ++scans[r]; },
-        [&](int r, const mcdem::Failure& failure) { failures.emplace_back(r, failure); })) {
-    }
-    ASSERT_EQ(failures.size(), 1u);
-    EXPECT_EQ(failures[0].first, 1);
-    EXPECT_EQ(failures[0].second.grain, 5);
-    EXPECT_GT(failures[0].second.step, 0);
-    EXPECT_NE(failures[0].second.cause.find("before the plate moved"), std::string::npos)
-        << failures[0].second.cause;
-    EXPECT_NE(failures[0].second.cause.find("contact.gamma is too high"), std::string::npos)
-        << failures[0].second.cause;
-    EXPECT_EQ(scans[0], 4) << "two levels, there and back";
-    EXPECT_EQ(scans[1], 0);
-    EXPECT_DOUBLE_EQ(simulation.progress(), 1);
+    const auto [scans, failures, progress] =
+        simulated(short_scene(starts), {starts[0].packing, starts[1].packing}, true);
+    EXPECT_FALSE(failures[0]);
+    ASSERT_TRUE(failures[1]);
+    EXPECT_EQ(failures[1]->grain, 5);
+    EXPECT_GT(failures[1]->step, 0);
+    for (const char* fact : {"before the plate moved", "contact.gamma is too high"})
+        EXPECT_THAT(failures[1]->cause, testing::HasSubstr(fact));
+    EXPECT_EQ(scans[0].size(), 4u) << "two levels, there and back";
+    EXPECT_TRUE(scans[1].empty());
+    EXPECT_DOUBLE_EQ(progress, 1);
 }
 
 // Two grains on top of each other, compressed by 3 to 14 % of the sum of their radii.
@@ -174,22 +166,19 @@ TEST(Failure, BeyondTheModelsRangeAReplicaContinuesOrStopsAsTheSceneSpecifies) {
     }
     auto scene = short_scene(starts);
     for (auto& replica : scene.replicas) replica.protocol.scans_per_stroke = 4;
-    mcdem::Simulation simulation(device(), scene, {starts[0].packing, starts[1].packing, starts[2].packing});
+    const auto [scans, failures, progress] =
+        simulated(scene, {starts[0].packing, starts[1].packing, starts[2].packing}, true);
     std::vector<std::vector<double>> overlaps(3);
-    std::vector<std::pair<int, mcdem::Failure>> failures;
-    while (simulation.advance(
-        [&](int r, const mcdem::Scan& scan) { overlaps[r].push_back(scan.max_overlap); },
-        [&](int r, const mcdem::Failure& failure) { failures.emplace_back(r, failure); })) {
-    }
+    for (int r = 0; r < 3; ++r)
+        for (const mcdem::Scan& scan : scans[r]) overlaps[r].push_back(scan.max_overlap);
     EXPECT_EQ(overlaps[0].size(), 8u);
     EXPECT_EQ(overlaps[2].size(), 8u);
     const auto first = std::ranges::find_if(overlaps[0], [](double overlap) { return overlap > 0.1; });
     ASSERT_NE(first, overlaps[0].end());
     EXPECT_EQ(overlaps[1], std::vector(overlaps[0].begin(), first + 1));
-    ASSERT_EQ(failures.size(), 1u);
-    EXPECT_EQ(failures[0].first, 1);
-    EXPECT_THAT(failures[0].second.cause,
-                testing::HasSubstr("more than the law of elastic_sphere was tested"));
+    EXPECT_FALSE(failures[0] || failures[2]);
+    ASSERT_TRUE(failures[1]);
+    EXPECT_THAT(failures[1]->cause, testing::HasSubstr("more than the law of elastic_sphere was tested"));
 }
 
 // A small grain between two large ones: the limit counts for its own size, so the large ones never touch.
@@ -204,44 +193,36 @@ TEST(Failure, AGrainThatVanishesBetweenTwoOthersStopsItsReplica) {
                       {{{0.03, 0.03, 0.01}, {0.03, 0.03, 0.0215}, {0.03, 0.03, 0.033}}, {0.02, 0.003, 0.02}}};
     auto scene = short_scene({start});
     scene.replicas[0].protocol.scans_per_stroke = 30;
-    mcdem::Simulation simulation(device(), scene, {start.packing});
-    std::string cause;
+    const auto [scans, failures, progress] = simulated(scene, start.packing, true);
     double deepest = 0;
-    while (simulation.advance(
-        [&](int, const mcdem::Scan& scan) {
-            deepest = std::max(deepest, scan.max_overlap);
-            EXPECT_GT(scan.position[2].z() - scan.position[0].z(), 0.02) << "the large grains touch";
-        },
-        [&](int, const mcdem::Failure& failure) { cause = failure.cause; })) {
+    for (const mcdem::Scan& scan : scans[0]) {
+        deepest = std::max(deepest, scan.max_overlap);
+        EXPECT_GT(scan.position[2].z() - scan.position[0].z(), 0.02) << "the large grains touch";
     }
-    EXPECT_THAT(cause, testing::HasSubstr("passed numerics.overlap_limit = 0.5 of the sum of the radii"));
+    ASSERT_TRUE(failures[0]);
+    EXPECT_THAT(failures[0]->cause,
+                testing::HasSubstr("passed numerics.overlap_limit = 0.5 of the sum of the radii"));
     EXPECT_GT(deepest, 0.3) << "max_overlap says it before";
     EXPECT_LE(deepest, 0.5);
 }
 
 std::string cause_of_failure(const Start& start) {
-    mcdem::Simulation simulation(device(), short_scene({start}), {start.packing});
-    std::string cause;
-    while (simulation.advance([](int, const mcdem::Scan&) {},
-                              [&](int, const mcdem::Failure& failure) { cause = failure.cause; })) {
-    }
-    return cause;
+    const auto failure = simulated(short_scene({start}), start.packing, true).failures[0];
+    return failure ? failure->cause : "";
 }
 
 TEST(Failure, AdviceNamesOnlyKeysThatTheModelUses) {
     Start start = squeezed(ContactModel::elastic_half_space, 1, 0.35, 5);
     const std::string at_rest = cause_of_failure(start);
-    EXPECT_NE(at_rest.find("before the plate moved"), std::string::npos) << at_rest;
-    EXPECT_EQ(at_rest.find("contact.gamma"), std::string::npos) << at_rest;
+    const auto without_gamma = testing::Not(testing::HasSubstr("contact.gamma"));
+    EXPECT_THAT(at_rest, testing::AllOf(testing::HasSubstr("before the plate moved"), without_gamma));
     start = squeezed(ContactModel::elastic_half_space, 1, 0.05, 5);
     start.replica.plate.end = 0.6 * start.replica.plate.start;
     const std::string compressed = cause_of_failure(start);
-    EXPECT_NE(compressed.find("no static solution"), std::string::npos) << compressed;
-    EXPECT_NE(compressed.find("raise plate.end"), std::string::npos) << compressed;
-    EXPECT_EQ(compressed.find("contact.gamma"), std::string::npos) << compressed;
+    EXPECT_THAT(compressed, testing::AllOf(testing::HasSubstr("no static solution"),
+                                           testing::HasSubstr("raise plate.end"), without_gamma));
     start.replica.contact = squeezed(ContactModel::mc_dem, 2, 0.05, 5).replica.contact;
-    const std::string with_gamma = cause_of_failure(start);
-    EXPECT_NE(with_gamma.find("or lower contact.gamma"), std::string::npos) << with_gamma;
+    EXPECT_THAT(cause_of_failure(start), testing::HasSubstr("or lower contact.gamma"));
 }
 
 }  // namespace

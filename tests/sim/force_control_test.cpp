@@ -4,12 +4,10 @@
 
 #include <cmath>
 
-#include "sim/traced_programme.h"
+#include "sim/control_kinds.h"
 
 namespace reference {
 namespace {
-
-using Stage = mcdem::ProtocolState::Stage;
 
 const std::string packing_text = R"([box]
 size_x = 0.08
@@ -28,35 +26,13 @@ const std::string loads =
     "[[programme]]\nforce = 0.2\n[[programme]]\nforce = 1\n[[programme]]\nforce = 0.3\n";
 constexpr double set[] = {0.2, 1, 0.3};
 
-/// `beyond`: largest relative overshoot in any interval. Packings without friction rearrange suddenly.
-struct Kind {
-    const char* name;
-    std::vector<std::string> overrides;
-    double beyond;
-};
-
-const Kind kinds[] = {
-    {"independent", {"contact.model=independent", "grains.friction=0", "walls.friction=0"}, 0.03},
-    {"mc_dem", {"grains.friction=0", "walls.friction=0"}, 0.03},
-    {"friction", {"contact.model=independent", "grains.friction=0.3", "contact.friction_law=mindlin"}, 1e-3},
-    {"mc_dem, friction", {"grains.friction=0.3", "contact.friction_law=mindlin"}, 1e-3},
-    {"elastic_sphere",
-     {"contact.model=elastic_sphere", "grains.friction=0.3", "contact.friction_law=mindlin"},
-     1e-3},
-    {"viscoelastic",
-     {"effects.viscoelasticity=0.4", "effects.relaxation_time=0.05", "grains.friction=0.3",
-      "contact.friction_law=mindlin"},
-     1e-3},
-    {"plastic", {"effects.plasticity=0.3", "grains.friction=0.3", "contact.friction_law=mindlin"}, 1e-3},
-};
-
 class ForceControl : public testing::TestWithParam<Kind> {};
 
 /// Largest relative overshoot of a leg's force in any interval.
 double beyond(const Traced& traced, int leg) {
     double farthest = -1;
     for (const auto& row : traced.rows)
-        if (row.leg == leg && row.stage != Stage::relax)
+        if (row.leg == leg && row.activity != mcdem::Activity::relax)
             farthest = std::max(farthest, (leg == 2 ? -1 : 1) * (row.force / set[leg] - 1));
     return farthest;
 }
@@ -65,9 +41,7 @@ TEST_P(ForceControl, ReachesTheForceWithoutOvershoot) {
     double farthest = -1;
     for (const char* seed : {"packing.seed=1", "packing.seed=2", "packing.seed=3"}) {
         SCOPED_TRACE(seed);
-        auto overrides = GetParam().overrides;
-        overrides.push_back(seed);
-        const Traced traced = trace(packing_text + loads, overrides);
+        const Traced traced = trace(packing_text + loads, GetParam().with(seed, true));
         EXPECT_EQ(traced.hindrance, "");
         ASSERT_EQ(traced.scans.size(), 3u);
         for (int leg = 0; leg < 3; ++leg) {
@@ -76,23 +50,18 @@ TEST_P(ForceControl, ReachesTheForceWithoutOvershoot) {
             farthest = std::max(farthest, beyond(traced, leg));
         }
     }
-    EXPECT_LT(farthest, GetParam().beyond);
+    EXPECT_LT(farthest, GetParam().force_beyond());
     fmt::print("{}: passes a force by at most {:.2g} % of it\n", GetParam().name, 100 * farthest);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ForceControl, testing::ValuesIn(kinds), [](const auto& kind) {
-    std::string name = kind.param.name;
-    std::erase_if(name, [](char c) { return c == ',' || c == ' '; });
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Kinds, ForceControl, testing::ValuesIn(control_kinds), test_name);
 
 // Viscoelastic grains relax; the plate follows to keep the force constant.
 TEST(ForceHold, KeepsTheForceWhileThePackingCreeps) {
     const Traced traced = trace(packing_text +
                                     "[[programme]]\nforce = 1\n[[programme]]\nstage = \"hold\"\nkeep = "
                                     "\"force\"\ntime = 0.3\nscans = 6\n",
-                                {"effects.viscoelasticity=0.4", "effects.relaxation_time=0.1",
-                                 "grains.friction=0.3", "contact.friction_law=mindlin"});
+                                creeping(0.1));
     ASSERT_EQ(traced.scans.size(), 7u);
     for (const auto& scan : traced.scans) EXPECT_NEAR(scan.force, 1, 1e-3);
     for (int k = 1; k < 7; ++k)
@@ -120,15 +89,7 @@ TEST(ForceControl, PositionOfOneGrainAgreesWithHertz) {
     constexpr double force = 0.05, radius = 0.01, youngs_modulus = 23.3e3, poisson = 0.5, wall = 1e13;
     const double modulus = 1 / ((1 - poisson * poisson) * (1 / youngs_modulus + 1 / wall));
     const double overlap = std::pow(force / (4.0 / 3 * modulus * std::sqrt(radius)), 2.0 / 3);
-    mcdem::Scene scene = mcdem::parse_scene(
-        "[box]\nsize_x = 0.021\nsize_y = 0.021\n[packing]\ncount = 1\ndiameter_mean = 0.02\ndiameter_sd = 0\n"
-        "diameter_min = 0.02\ndiameter_max = 0.02\npacking_fraction = 0.45\n[plate]\nstart = 0.0215\nend = "
-        "0.015\n"
-        "[grains]\nexcess_density = 0\n[walls]\nyoungs_modulus = 1e13\n[contact]\nmodel = \"independent\"\n"
-        "[[programme]]\nforce = 0.05\n",
-        "grain.toml");
-    scene.precision = finest();
-    const Traced traced = trace(scene, 0, {{{0.0105, 0.0105, 0.01}}, {0.02}});
+    const Traced traced = trace_one_grain("[[programme]]\nforce = 0.05\n");
     ASSERT_EQ(traced.scans.size(), 1u);
     EXPECT_NEAR(traced.scans[0].tag.plate_z / (2 * (radius - overlap)), 1, 1e-4);
 }
@@ -136,25 +97,20 @@ TEST(ForceControl, PositionOfOneGrainAgreesWithHertz) {
 TEST(ForceControl, UnreachableForceEndsWithItsCause) {
     const Traced at_end =
         trace(packing_text + "[[programme]]\nforce = 50\n", {"plate.end=0.085", "grains.friction=0.3"});
-    EXPECT_NE(
-        at_end.hindrance.find("stage 1 of the programme: the force 50 N cannot be reached: the plate is at "
-                              "plate.end = 0.085"),
-        std::string::npos)
-        << at_end.hindrance;
+    EXPECT_THAT(at_end.hindrance, testing::HasSubstr("stage 1 of the programme: the force 50 N cannot be "
+                                                     "reached: the plate is at plate.end = 0.085"));
     EXPECT_TRUE(at_end.scans.empty());
     const Traced floating = trace(
         packing_text +
             "[[programme]]\nposition = 0.11\n[[programme]]\nstage = \"hold\"\nkeep = \"force\"\ntime = 1\n",
         {"plate.start=0.11"});
-    EXPECT_NE(floating.hindrance.find(
-                  "stage 2 of the programme: the force 0 N cannot be reached: no grain presses"),
-              std::string::npos)
-        << floating.hindrance;
+    EXPECT_THAT(
+        floating.hindrance,
+        testing::HasSubstr("stage 2 of the programme: the force 0 N cannot be reached: no grain presses"));
     EXPECT_EQ(floating.scans.size(), 1u);
     const Traced at_start = trace(packing_text + "[[programme]]\nforce = 1e-9\n",
                                   {"packing.packing_fraction=0.6", "plate.start=0.083"});
-    EXPECT_NE(at_start.hindrance.find("the plate is at plate.start = 0.083"), std::string::npos)
-        << at_start.hindrance;
+    EXPECT_THAT(at_start.hindrance, testing::HasSubstr("the plate is at plate.start = 0.083"));
 }
 
 }  // namespace

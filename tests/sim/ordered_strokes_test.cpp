@@ -7,7 +7,7 @@
 #include "core/law_range.h"
 #include "core/names.h"
 #include "sim/ordered_packings.h"
-#include "sim/simulation.h"
+#include "sim/simulated.h"
 
 namespace reference::ordered_strokes {
 namespace {
@@ -67,12 +67,7 @@ std::vector<Case> cases() {
     return all;
 }
 
-struct Stroke {
-    std::vector<Scan> scans;
-    std::string failure;
-};
-
-std::vector<Stroke> strokes(const std::vector<Case>& all, double time_step) {
+Simulated strokes(const std::vector<Case>& all, double time_step) {
     mcdem::Scene scene;
     scene.slots = 32;
     scene.output.positions = scene.output.contacts = false;
@@ -82,21 +77,7 @@ std::vector<Stroke> strokes(const std::vector<Case>& all, double time_step) {
         scene.replicas.push_back(start.replica);
         packings.push_back(start.packing);
     }
-    std::vector<Stroke> done(all.size());
-    const auto take = [&](int r, Scan scan) {
-        if (scan.phase == mcdem::Phase::load)
-            done[static_cast<std::size_t>(r)].scans.push_back(std::move(scan));
-    };
-    const auto fail = [&](int r, const mcdem::Failure& failure) {
-        done[static_cast<std::size_t>(r)].failure = failure.text();
-    };
-    mcdem::Simulation simulation(device(), scene, packings);
-    const auto under_way = [](const Stroke& stroke) {
-        return stroke.failure.empty() && static_cast<int>(stroke.scans.size()) < scans;
-    };
-    while (std::ranges::any_of(done, under_way) && simulation.advance(take, fail)) {
-    }
-    return done;
+    return simulated(scene, packings, false, scans);
 }
 
 double force(const Scan& scan, Wall wall) {
@@ -119,13 +100,14 @@ TEST(OrderedStrokes, HaveTheForcesOfAFinerStep) {
     const auto all = cases();
     const auto found = strokes(all, 1), finer = strokes(all, 0.25);
     for (std::size_t k = 0; k < all.size(); ++k) {
-        ASSERT_EQ(finer[k].failure, "") << all[k].text();
-        EXPECT_EQ(found[k].failure, "") << all[k].text();
-        for (std::size_t i = 0; i < found[k].scans.size(); ++i) {
+        SCOPED_TRACE(all[k].text());
+        ASSERT_GE(finer.scans[k].size(), std::size_t{scans});
+        ASSERT_GE(found.scans[k].size(), std::size_t{scans});
+        for (std::size_t i = 0; i < std::size_t{scans}; ++i) {
             const double overlap = all[k].most() * static_cast<double>(i + 1) / scans;
             if (overlap < least_overlap) continue;
-            const std::string problem = wrong(found[k].scans[i], finer[k].scans[i]);
-            EXPECT_EQ(problem, "") << all[k].text() << ", overlap " << overlap;
+            const std::string problem = wrong(found.scans[k][i], finer.scans[k][i]);
+            EXPECT_EQ(problem, "") << "overlap " << overlap;
             if (!problem.empty()) break;
         }
     }

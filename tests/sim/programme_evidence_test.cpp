@@ -10,20 +10,12 @@ namespace {
 
 constexpr double radius = 0.01, part = 0.4, relaxation_time = 0.05, hold = 0.15;
 
-/// One grain between two almost rigid walls; each contact is a standard linear solid.
+/// Each contact is a standard linear solid.
 Traced squeezed(const std::string& programme) {
-    mcdem::Scene scene = mcdem::parse_scene(
-        "[box]\nsize_x = 0.021\nsize_y = 0.021\n[packing]\ncount = 1\ndiameter_mean = 0.02\ndiameter_sd = 0\n"
-        "diameter_min = 0.02\ndiameter_max = 0.02\npacking_fraction = 0.45\n[plate]\nstart = 0.0215\nend = "
-        "0.015\n"
-        "[grains]\nexcess_density = 0\n[walls]\nyoungs_modulus = 1e13\n[contact]\nmodel = "
-        "\"independent\"\n[effects]\n"
-        "viscoelasticity = 0.4\nrelaxation_time = 0.05\n[protocol]\nrate_tolerance = 0\nstop_at_scans = "
-        "true\n" +
-            programme,
-        "grain.toml");
-    scene.precision = finest();
-    return trace(scene, 0, {{{0.0105, 0.0105, 0.01}}, {2 * radius}});
+    return trace_one_grain(
+        "[effects]\nviscoelasticity = 0.4\nrelaxation_time = 0.05\n[protocol]\nrate_tolerance = 0\n"
+        "stop_at_scans = true\n" +
+        programme);
 }
 
 /// Force of the unrelaxed contact at the plate's position [N].

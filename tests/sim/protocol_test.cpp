@@ -1,12 +1,10 @@
 // The protocol on its own, with artificial results: where it scans, in which order, and when it considers a
 // packing at rest.
-#include "sim/protocol.h"
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "sim/driven_protocol.h"
 
 namespace mcdem {
 namespace {
@@ -46,17 +44,15 @@ struct Course {
 private:
     void run(const Replica& replica, double kinetic, int longest) {
         ProtocolRunner runner(replica, time_step, scale);
-        while (!runner.finished()) {
-            intervals.push_back(runner.next([&](const StepInterval&) { return longest; }));
-            ASSERT_GT(intervals.back().steps, 0);
-            ASSERT_LE(intervals.back().steps, longest);
-            ASSERT_LT(intervals.size(), 100000u);
-            steps += intervals.back().steps;
-            if (const auto scan = runner.on_interval_done(answer(intervals.back().steps, kinetic)))
-                scans.push_back(*scan);
-            progress.push_back(runner.progress());
-        }
-        EXPECT_EQ(runner.next([](const StepInterval&) { return 60; }).steps, 0);
+        drive(
+            runner, time_step, longest,
+            [&](const IntervalEnd&, IntervalResult& result) { result.kinetic_energy = kinetic; },
+            [&](const ProtocolState&, const StepInterval& interval, const IntervalEnd&, const auto& scan) {
+                intervals.push_back(interval);
+                steps += interval.steps;
+                if (scan) scans.push_back(*scan);
+                progress.push_back(runner.progress());
+            });
     }
 };
 
@@ -229,7 +225,7 @@ TEST(Protocol, ThePlateWaitsWhileGrainsRearrange) {
     const auto speed_after = [&](double energy) {
         ProtocolRunner runner(replica, time_step, grains);
         const auto five_steps = [](const StepInterval&) { return 5; };
-        while (runner.state().stage == ProtocolState::Stage::relax) runner.on_interval_done(answer(10, 0));
+        while (runner.state().activity == Activity::relax) runner.on_interval_done(answer(10, 0));
         runner.on_interval_done(answer(runner.next(five_steps).steps, energy));
         return std::abs(runner.next(five_steps).plate_velocity);
     };
@@ -255,19 +251,20 @@ std::vector<StepInterval> stroke_above_grains(double weight) {
     replica.protocol.rate_tolerance = 0.02;
     ProtocolRunner runner(replica, time_step, grains);
     std::vector<StepInterval> moves;
-    double lowest = grains.top;
-    while (!runner.finished()) {
-        const StepInterval interval = runner.next([](const StepInterval&) { return 5; });
-        const double z =
-            interval.plate_z + interval.plate_velocity * interval.steps * interval.step_part * time_step;
-        lowest = std::min(lowest, z);
-        IntervalResult result = answer(interval.steps, 0);
-        // Half of the way is plastic: on the way up the plate leaves the grains at 0.125 m.
-        const double surface = interval.plate_velocity < 0 ? grains.top : (grains.top + lowest) / 2;
-        result.wall_force[static_cast<int>(Wall::plate)] = {0, 0, 1e3 * std::max(0.0, surface - z)};
-        runner.on_interval_done(result);
-        if (interval.plate_velocity != 0) moves.push_back(interval);
-    }
+    double lowest = grains.top, before = HUGE_VAL;
+    drive(
+        runner, time_step, 5,
+        [&](const IntervalEnd& end, IntervalResult& result) {
+            lowest = std::min(lowest, end.plate_z);
+            // Half of the way is plastic: on the way up the plate leaves the grains at 0.125 m.
+            const double surface = end.plate_z < before ? grains.top : (grains.top + lowest) / 2;
+            result.wall_force[static_cast<int>(Wall::plate)] = {0, 0,
+                                                                1e3 * std::max(0.0, surface - end.plate_z)};
+            before = end.plate_z;
+        },
+        [&](const ProtocolState&, const StepInterval& interval, const auto&, const auto&) {
+            if (interval.plate_velocity != 0) moves.push_back(interval);
+        });
     return moves;
 }
 
@@ -295,7 +292,7 @@ TEST(Protocol, APlateThatTouchesNoGrainIsFast) {
 TEST(Protocol, WithoutAToleranceTheSpeedIsThatOfTheScene) {
     Replica replica = replica_of(1, 4, false);
     ProtocolRunner runner(replica, time_step, scale);
-    while (runner.state().stage == ProtocolState::Stage::relax) runner.on_interval_done(answer(10, 0));
+    while (runner.state().activity == Activity::relax) runner.on_interval_done(answer(10, 0));
     EXPECT_NEAR(runner.next([](const StepInterval&) { return 5; }).plate_velocity, -0.5, 1e-9);
     const double strain_rate = 0.5 / replica.plate.start, min_pressure = 1e-5 * replica.grains.youngs_modulus;
     ASSERT_FALSE(runner.on_interval_done(answer(5, 0)));

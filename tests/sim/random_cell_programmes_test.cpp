@@ -1,11 +1,9 @@
 // Random programmes on a cell that is represented by a spring: they end, and scans have the prescribed
 // strains and stresses.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "sim/protocol.h"
+#include "sim/driven_protocol.h"
 #include "sim/random_draws.h"
 
 namespace mcdem::random_cell_programmes {
@@ -35,6 +33,8 @@ Mat3 spring_stress(const Strain& strain) {
     stress(1, 2) = stress(2, 1) = -stiffness * strain[5];
     return stress;
 }
+
+void respond(const IntervalEnd& end, IntervalResult& result) { result.stress = spring_stress(end.strain); }
 
 class RandomProgramme : RandomDraws {
 public:
@@ -108,33 +108,24 @@ TEST(RandomCellProgrammes, EndAndScanAtThePrescribedValues) {
         const auto legs = legs_of(replica.programme, replica.plate);
         Strain begin{};
         int scans = 0, leg = 0, level = 0;
-        for (int rounds = 0; !runner.finished(); ++rounds) {
-            ASSERT_LT(rounds, 400000);
-            const StepInterval interval = runner.next([](const StepInterval&) { return 60; });
-            ASSERT_GE(interval.steps, 1);
-            ASSERT_LE(interval.steps, 60);
-            IntervalResult result;
-            result.steps = interval.steps;
-            Strain strain = interval.strain;
-            for (std::size_t k = 0; k < 6; ++k)
-                strain[k] += interval.strain_rate[k] * interval.steps * interval.step_part * time_step;
-            result.stress = spring_stress(strain);
-            for (int axis = 0; axis < 3; ++axis) ASSERT_LE(strain[static_cast<std::size_t>(axis)], 0.378);
-            if (runner.state().leg != leg) {
-                leg = runner.state().leg;
+        const auto watch = [&](const auto& before, const auto& interval, const auto& end, const auto& scan) {
+            for (int axis = 0; axis < 3; ++axis) ASSERT_LE(end.strain[axis], 0.378);
+            if (before.leg != leg) {
+                leg = before.leg;
                 level = 0;
                 begin = interval.strain;
             }
+            if (!scan) return;
+            ++scans;
             const Stage& stage =
                 replica.programme[static_cast<std::size_t>(legs[static_cast<std::size_t>(leg)].stage)];
-            if (!runner.on_interval_done(result)) continue;
-            ++scans;
             if (++level < stage.scans || stage.kind != StageKind::move || !replica.protocol.stop_at_scans)
-                continue;
-            expect_end(stage, begin, strain);
+                return;
+            expect_end(stage, begin, end.strain);
             by_stress += sets_stress(stage);
             ++ends;
-        }
+        };
+        drive(runner, time_step, 60, respond, watch);
         ASSERT_EQ(runner.hindrance(), "");
         EXPECT_EQ(scans, scan_count(replica.programme));
         EXPECT_EQ(runner.progress(), 1);
@@ -165,16 +156,10 @@ ProtocolRunner to_pressure(double rate_tolerance = 0) {
 /// The strains at the scans of a programme.
 std::vector<Strain> scans_of_spring(ProtocolRunner& runner) {
     std::vector<Strain> scans;
-    while (!runner.finished()) {
-        const StepInterval interval = runner.next([](const StepInterval&) { return 60; });
-        IntervalResult result;
-        result.steps = interval.steps;
-        Strain strain = interval.strain;
-        for (std::size_t k = 0; k < 6; ++k)
-            strain[k] += interval.strain_rate[k] * interval.steps * interval.step_part * time_step;
-        result.stress = spring_stress(strain);
-        if (runner.on_interval_done(result)) scans.push_back(strain);
-    }
+    drive(runner, time_step, 60, respond,
+          [&](const ProtocolState&, const StepInterval&, const IntervalEnd& end, const auto& scan) {
+              if (scan) scans.push_back(end.strain);
+          });
     return scans;
 }
 
@@ -231,11 +216,10 @@ TEST(ListedScans, OutsideTheMoveEndTheProgramme) {
     programme[1].scan_at = {0.01, 0.2};
     ProtocolRunner runner = runner_of(programme);
     EXPECT_EQ(scans_of_spring(runner).size(), 1u);
-    EXPECT_NE(runner.hindrance().find(
-                  "stage 2 of the programme: there is no scan at strain_z = 0.01: the move goes "
-                  "from 0.1"),
-              std::string::npos)
-        << runner.hindrance();
+    EXPECT_THAT(
+        runner.hindrance(),
+        testing::HasSubstr("stage 2 of the programme: there is no scan at strain_z = 0.01: the move goes "
+                           "from 0.1"));
 }
 
 TEST(StressOfACell, UnreachableStressEndsTheProgramme) {
@@ -247,32 +231,28 @@ TEST(StressOfACell, UnreachableStressEndsTheProgramme) {
                             Case{150, 0, "s it is still away from it at a strain of -"},
                             Case{150, 0.01, "a cell cannot be stretched further at a strain of -10"}}) {
         ProtocolRunner runner = to_pressure(one.rate_tolerance);
-        for (int rounds = 0; !runner.finished(); ++rounds) {
-            ASSERT_LT(rounds, 400000);
-            const StepInterval interval = runner.next([](const StepInterval&) { return 60; });
-            IntervalResult result;
-            result.steps = interval.steps;
-            result.stress = one.stress * Mat3::Identity();
-            EXPECT_FALSE(runner.on_interval_done(result));
-        }
-        EXPECT_NE(runner.hindrance().find(one.why), std::string::npos) << runner.hindrance();
-        EXPECT_NE(runner.hindrance().find("the stress 100 Pa along "), std::string::npos)
-            << runner.hindrance();
+        drive(
+            runner, time_step, 60,
+            [&](const IntervalEnd&, IntervalResult& result) {
+                result.stress = one.stress * Mat3::Identity();
+            },
+            [](const auto&, const auto&, const auto&, const auto& scan) { EXPECT_FALSE(scan); });
+        EXPECT_THAT(runner.hindrance(), testing::AllOf(testing::HasSubstr(one.why),
+                                                       testing::HasSubstr("the stress 100 Pa along ")));
     }
 }
 
 TEST(StressOfACell, DamagedCheckpointIsRefused) {
     const ProtocolRunner runner = to_pressure();
-    ProtocolState state = runner.state();
-    EXPECT_TRUE(runner.is_possible(state));
-    state.cell.direction[1].strain = 1;
-    EXPECT_FALSE(runner.is_possible(state));
-    state = runner.state();
-    state.cell.direction[5].strain = NAN;
-    EXPECT_FALSE(runner.is_possible(state));
-    state = runner.state();
-    state.cell.begin[2] = NAN;
-    EXPECT_FALSE(runner.is_possible(state));
+    EXPECT_TRUE(runner.is_possible(runner.state()));
+    const auto possible = [&](auto damage) {
+        ProtocolState state = runner.state();
+        damage(state.cell);
+        return runner.is_possible(state);
+    };
+    EXPECT_FALSE(possible([](CellControl::State& cell) { cell.direction[1].strain = 1; }));
+    EXPECT_FALSE(possible([](CellControl::State& cell) { cell.direction[5].strain = NAN; }));
+    EXPECT_FALSE(possible([](CellControl::State& cell) { cell.begin[2] = NAN; }));
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 // Random programmes on a packing that is represented by a spring: they end, time increases, and scans are at
 // the prescribed positions, forces and times.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "sim/protocol.h"
+#include "sim/driven_protocol.h"
 #include "sim/random_draws.h"
 
 namespace mcdem::random_programmes {
@@ -100,30 +98,24 @@ TEST(RandomProgrammes, EndAndScanAtThePrescribedValues) {
         std::vector<ProtocolRunner::ScanTag> scans;
         std::vector<int> leg_of;
         double before = -1, highest = -1;
-        for (int rounds = 0; !runner.finished(); ++rounds) {
-            ASSERT_LT(rounds, 400000);
-            const StepInterval interval = runner.next([](const StepInterval&) { return 60; });
-            ASSERT_GE(interval.steps, 1);
-            ASSERT_LE(interval.steps, 60);
-            const double z =
-                interval.plate_z + interval.plate_velocity * interval.steps * interval.step_part * time_step;
-            ASSERT_GE(z, end - 1e-12);
-            ASSERT_LE(z, start + 1e-12);
-            IntervalResult result;
-            result.steps = interval.steps;
-            result.wall_force[static_cast<int>(Wall::plate)] = {0, 0, spring_force(z)};
-            result.wall_force[static_cast<int>(Wall::floor)] = {0, 0, -spring_force(z)};
-            const int leg = runner.state().leg;
-            if (const auto scan = runner.on_interval_done(result)) {
-                EXPECT_GT(scan->time, before);
-                before = scan->time;
-                EXPECT_EQ(scan->frame, static_cast<int>(scans.size()));
-                scans.push_back(*scan);
-                leg_of.push_back(leg);
-            }
-            EXPECT_GE(runner.progress(), highest - 0.1);
-            highest = std::max(highest, runner.progress());
-        }
+        drive(
+            runner, time_step, 60,
+            [](const IntervalEnd& end_of, IntervalResult& result) {
+                ASSERT_GE(end_of.plate_z, end - 1e-12);
+                ASSERT_LE(end_of.plate_z, start + 1e-12);
+                set_force(result, spring_force(end_of.plate_z));
+            },
+            [&](const ProtocolState& state, const StepInterval&, const IntervalEnd&, const auto& scan) {
+                if (scan) {
+                    EXPECT_GT(scan->time, before);
+                    before = scan->time;
+                    EXPECT_EQ(scan->frame, static_cast<int>(scans.size()));
+                    scans.push_back(*scan);
+                    leg_of.push_back(state.leg);
+                }
+                EXPECT_GE(runner.progress(), highest - 0.1);
+                highest = std::max(highest, runner.progress());
+            });
         ASSERT_EQ(runner.hindrance(), "");
         EXPECT_EQ(highest, 1);
         expect_scans(replica, scans, leg_of);

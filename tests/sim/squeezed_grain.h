@@ -26,13 +26,25 @@ public:
         EXPECT_EQ(result.status, 0);
         plate_ -= 2 * change;
         energy_ = result.elastic_energy;
-        return result.wall_force[static_cast<int>(mcdem::Wall::plate)].z();
+        return force_ = result.wall_force[static_cast<int>(mcdem::Wall::plate)].z();
+    }
+    struct Point {
+        double overlap, force, energy;  ///< at the end of a step; the energy of both contacts
+        double work;                    ///< of both contacts, since the start of the path [J]
+    };
+    /// Changes the overlap by `change` [m] in equal steps. Work by the trapezoidal rule.
+    std::vector<Point> path(double change, int steps) {
+        std::vector<Point> points;
+        double work = 0;
+        for (int step = 0; step < steps; ++step) {
+            const double before = force_;
+            work += (before + squeeze(change / steps)) * change / steps;
+            points.push_back({overlap(), force_, energy_, work});
+        }
+        return points;
     }
     double overlap() const { return radius - plate_ / 2; }
     double time_step() const { return batch_.engine().time_step(0); }
-    /// Energy of both contacts at the end of the last step [J].
-    double energy() const { return energy_; }
-
     /// 4/3 E* sqrt(R) delta^(3/2)
     static double hertz(double overlap) {
         return overlap > 0 ? 4.0 / 3 * modulus * std::sqrt(radius) * std::pow(overlap, 1.5) : 0;
@@ -53,7 +65,7 @@ private:
     }
     mutable Batch batch_;
     double plate_;
-    double energy_ = 0;
+    double force_ = 0, energy_ = 0;
 };
 
 }  // namespace reference

@@ -7,13 +7,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "reference/test_scene.h"
-#include "sim/simulation.h"
+#include "sim/simulated.h"
 
 namespace mcdem {
 namespace {
 
-using reference::device;
 using reference::Start;
 
 Start compressed(ContactModel model) {
@@ -36,15 +34,7 @@ Scan strongest(const Start& start) {
     Scene scene;
     scene.precision = Precision::double_precision;
     scene.replicas = {start.replica};
-    Simulation simulation(device(), scene, {start.packing});
-    Scan found;
-    while (simulation.advance(
-        [&](int, const Scan& scan) {
-            if (scan.phase == Phase::load) found = scan;
-        },
-        [](int, const Failure& failure) { ADD_FAILURE() << failure.cause; })) {
-    }
-    return found;
+    return reference::simulated(scene, start.packing).scans[0].at(0);
 }
 
 class StressAtRest : public ::testing::TestWithParam<ContactModel> {};

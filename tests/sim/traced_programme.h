@@ -13,7 +13,7 @@ struct Traced {
     struct Row {
         double time, plate_z, force;  ///< [s], [m], [N]
         int leg;
-        mcdem::ProtocolState::Stage stage;
+        mcdem::Activity activity;
         mcdem::Mat3 stress;  ///< of a cell [Pa]
         mcdem::Strain strain;
     };
@@ -47,7 +47,7 @@ inline Traced trace(const mcdem::Scene& scene, int r, Packing packing) {
         plate.on_interval_done(result);
         const auto scan = runner.on_interval_done(result, plate.arrived(engine.max_plate_move(0)));
         const double force = result.wall_force[static_cast<int>(mcdem::Wall::plate)].z();
-        traced.rows.push_back({runner.state().time, runner.plate_z(), force, before.leg, before.stage,
+        traced.rows.push_back({runner.state().time, runner.plate_z(), force, before.leg, before.activity,
                                result.stress, runner.strain()});
         if (scan) traced.scans.push_back({*scan, force, result.stress, runner.strain(), engine.state(0)});
         traced.status |= result.status;
@@ -60,6 +60,33 @@ inline Traced trace(const mcdem::Scene& scene, int r, Packing packing) {
 inline Traced trace(const std::string& text, const std::vector<std::string>& overrides = {}) {
     const auto scene = mcdem::parse_scene(text, "traced.toml", overrides);
     return trace(scene, 0, mcdem::make_packing(scene.replicas[0]));
+}
+
+/// One grain of 10 mm radius between two almost rigid walls.
+inline Traced trace_one_grain(const std::string& text) {
+    mcdem::Scene scene = mcdem::parse_scene(R"([box]
+size_x = 0.021
+size_y = 0.021
+[packing]
+count = 1
+diameter_mean = 0.02
+diameter_sd = 0
+diameter_min = 0.02
+diameter_max = 0.02
+packing_fraction = 0.45
+[plate]
+start = 0.0215
+end = 0.015
+[grains]
+excess_density = 0
+[walls]
+youngs_modulus = 1e13
+[contact]
+model = "independent"
+)" + text,
+                                            "grain.toml");
+    scene.precision = finest();
+    return trace(scene, 0, {{{0.0105, 0.0105, 0.01}}, {0.02}});
 }
 
 }  // namespace reference

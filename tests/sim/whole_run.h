@@ -95,4 +95,35 @@ inline void expect_same(WholeRun& one, int r, WholeRun& other, int s, int scans 
     EXPECT_GT(one.told[r].numbers.size(), 50u);
 }
 
+/// Replica r of the batch gives the same bits alone.
+inline void expect_same_alone(Precision precision, const std::vector<Start>& starts, int scans = 4) {
+    WholeRun batch(precision, starts);
+    batch.finish();
+    for (std::size_t r = 0; r < starts.size(); ++r) {
+        SCOPED_TRACE(r);
+        WholeRun alone(precision, {starts[r]});
+        alone.finish();
+        expect_same(alone, 0, batch, static_cast<int>(r), scans);
+    }
+}
+
+/// Saves at several moments, restores into a new simulation, runs to the end.
+inline void expect_same_after_restarts(const std::vector<Start>& starts, int scans = 4) {
+    WholeRun whole(Precision::single_precision, starts);
+    int rounds = 0;
+    while (whole.advance()) ++rounds;
+    for (const int stop : {0, 1, rounds / 7, rounds / 4, rounds / 2, 3 * rounds / 4}) {
+        SCOPED_TRACE(stop);
+        WholeRun first(Precision::single_precision, starts), second(Precision::single_precision, starts);
+        first.advance(stop);
+        const auto saved = first.save();
+        second.restore(saved);
+        second.told = first.told;
+        EXPECT_TRUE(second.save() == saved);
+        second.finish();
+        for (int r = 0; r < static_cast<int>(starts.size()); ++r)
+            expect_same(whole, r, second, r, scans, first.told[r].scans < scans);
+    }
+}
+
 }  // namespace reference
