@@ -14,7 +14,6 @@ from .command_line import output_path
 
 if TYPE_CHECKING:
     from ..experiment.experiment import Experiment
-    from ..experiment.settings import Settings
     from ..importing.assemble import Imported, Known
     from ..importing.import_files import Attempt
     from ..problems import Problems
@@ -75,7 +74,7 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _settings(options: argparse.Namespace, problems: "Problems") -> "Settings":
+def _settings(options: argparse.Namespace, problems: "Problems") -> "Experiment":
     """Values that are not in the tables; their problems are reported together with all others."""
     from ..experiment.settings import parse_settings
     text = _bytes_of(options.metadata) if options.metadata else b""
@@ -91,17 +90,17 @@ def _bytes_of(file: str) -> bytes:
     return read_input(file)
 
 
-def _known(settings: "Settings", voxel_size: float | None) -> "Known":
+def _known(settings: "Experiment", voxel_size: float | None) -> "Known":
     """What the import knows without the tables; where a value is missing, its default."""
     from ..importing.assemble import Known
-    from ..results.parameters import has_programme
     known = {"youngs_modulus": settings.materials.get("grains.youngs_modulus"),
              "poisson_ratio": settings.materials.get("grains.poisson_ratio"), "voxel_size": voxel_size}
-    return Known(box=(settings.box.size_x, settings.box.size_y), shape=settings.box.shape, plate_start=settings.plate_start,
-                 programme=has_programme(settings.parameters), **{name: value for name, value in known.items() if value is not None})
+    recording = settings.recording
+    return Known(box=(recording.box.size_x, recording.box.size_y), shape=recording.box.shape, plate_start=recording.plate_start,
+                 programme=recording.has_programme, **{name: value for name, value in known.items() if value is not None})
 
 
-def _import(options: argparse.Namespace, settings: "Settings", problems: "Problems", work: pathlib.Path) -> "Experiment":
+def _import(options: argparse.Namespace, settings: "Experiment", problems: "Problems", work: pathlib.Path) -> "Experiment":
     """Makes the experiment in the new folder `work` and moves it to the folder of --out."""
     from ..experiment.publish import publish, read_back
     from ..importing.import_files import import_files
@@ -122,13 +121,13 @@ def _import(options: argparse.Namespace, settings: "Settings", problems: "Proble
     return experiment
 
 
-def _write(work: pathlib.Path, mapping: str, imported: "Imported", settings: "Settings", gzip: bool) -> None:
+def _write(work: pathlib.Path, mapping: str, imported: "Imported", settings: "Experiment", gzip: bool) -> None:
     """All files of the experiment."""
     from ..experiment.settings import settings_text
     from ..experiment.write import SETTINGS_FILE, write_files
     from ..importing.assemble import write_tables
-    if math.isnan(settings.plate_start):
-        settings = replace(settings, plate_start=imported.plate_start)
+    if math.isnan(settings.recording.plate_start):
+        settings = replace(settings, recording=replace(settings.recording, plate_start=imported.plate_start))
     work.mkdir()
     write_tables(imported, work, gzip)
     write_files(work, {MAPPING: mapping.encode(errors="surrogateescape"),

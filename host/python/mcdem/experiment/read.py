@@ -13,7 +13,6 @@ from ..files import INTACT
 from ..look import Path, is_file, is_folder, is_there, leads_somewhere
 from ..problems import Problems
 from ..results.recording import Recording
-from ..results.run_file import no_scans
 from .averages import average_contacts
 from .contacts import read_contacts
 from .experiment import Experiment
@@ -37,13 +36,12 @@ def read_experiment(folder: Path, largest: int = LARGEST_TABLE) -> Experiment:
             _expect_experiment(folder)
         with _refusal(folder, "read"):
             settings = read_settings(folder / "experiment.toml", problems)
-            start = Recording(settings.name, settings.parameters, settings.box, settings.plate_start, np.zeros(0), no_scans())
-            recording = _with_tables(folder, start, settings.materials.get("grains.youngs_modulus", math.inf), problems, largest)
+            recording = _with_tables(folder, settings.recording, settings.materials.get("grains.youngs_modulus", math.inf), problems, largest)
         problems.report()
         if math.isnan(recording.plate_start):
             recording = replace(recording, plate_start=float(recording.scans.plate_z.max()))
         averaged = average_contacts(recording.scans, len(recording.diameter), settings.measurement.force_threshold)
-        return settings.experiment(replace(recording, scans=averaged))
+        return replace(settings, recording=replace(recording, scans=averaged))
 
 
 def read_experiments(folders: Sequence[Path], option: str) -> list[Experiment]:
