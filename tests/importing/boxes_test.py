@@ -4,7 +4,7 @@ import unittest
 import numpy as np
 
 from lab import BOX, ImportCase, dump_of_grains, plain_plate
-from mcdem.importing.assemble import Known
+from mcdem.importing.mapping import Known
 
 OPEN = "ff ff ff\n0 1\n0 1\n0 1"
 X, Y = BOX

@@ -8,9 +8,9 @@ import numpy as np
 
 from lab import (Contact, ImportCase, Style, dump_of_contacts, dump_of_grains, lab_contacts, lab_grains, lab_plate, mapped,
                  plain_plate)
-from mcdem.importing.assemble import Known, import_tables
+from mcdem.importing.assemble import import_tables
 from mcdem.importing.guess import guess_tables, mapping_of
-from mcdem.importing.mapping import mapping_text
+from mcdem.importing.mapping import Known, mapping_text
 from mcdem.importing.read_mapping import parse_mapping
 from mcdem.importing.text import Form
 

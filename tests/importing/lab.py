@@ -16,9 +16,9 @@ if MISSING:
 import numpy as np
 
 from mcdem.errors import InputError
-from mcdem.importing.assemble import Known, import_tables
+from mcdem.importing.assemble import import_tables
 from mcdem.importing.guess import guess_tables, mapping_of, read_import_tables
-from mcdem.importing.mapping import WALLS, mapping_text, unclear_entries
+from mcdem.importing.mapping import WALLS, Known, mapping_text, unclear_entries
 from mcdem.importing.read_mapping import parse_mapping
 from mcdem.toml import toml_value
 

@@ -4,7 +4,7 @@ import unittest
 import numpy as np
 
 from lab import ImportCase, Style
-from mcdem.importing.assemble import Known
+from mcdem.importing.mapping import Known
 from mcdem.importing.names import column_name
 
 VOXEL = 1.25e-4  # [m]

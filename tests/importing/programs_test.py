@@ -4,7 +4,7 @@ import unittest
 import numpy as np
 
 from lab import BOX, ImportCase, Style, lab_plate, plain_plate
-from mcdem.importing.assemble import Known
+from mcdem.importing.mapping import Known
 from mcdem.importing.guess import mapping_of
 from mcdem.importing.mapping import mapping_text
 

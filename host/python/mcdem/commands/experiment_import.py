@@ -14,8 +14,9 @@ from .command_line import output_path
 
 if TYPE_CHECKING:
     from ..experiment.experiment import Experiment
-    from ..importing.assemble import Imported, Known
+    from ..importing.assemble import Imported
     from ..importing.import_files import Attempt
+    from ..importing.mapping import Known
     from ..problems import Problems
 
 EPILOG = """\
@@ -92,7 +93,7 @@ def _bytes_of(file: str) -> bytes:
 
 def _known(settings: "Experiment", voxel_size: float | None) -> "Known":
     """What the import knows without the tables; where a value is missing, its default."""
-    from ..importing.assemble import Known
+    from ..importing.mapping import Known
     known = {"youngs_modulus": settings.materials.get("grains.youngs_modulus"),
              "poisson_ratio": settings.materials.get("grains.poisson_ratio"), "voxel_size": voxel_size}
     recording = settings.recording

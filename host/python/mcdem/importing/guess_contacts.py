@@ -1,12 +1,17 @@
 """Guesses the meaning of a table of contacts: grains and walls, sides of the forces, units."""
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..problems import Problems
-from .contacts import import_contacts
+from .arrays import Floats
+from .contacts import ContactFrames, import_contacts
+from .grains import GrainFrames
 from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
 from .guess_walls import guess_walls, set_walls, unknown_partners
-from .mapping import UNCLEAR, guess, negated
+from .mapping import UNCLEAR, Known, MappedTable, guess, negated
 from .names import FORCES
+from .rows import ImportTable
 
 MAX_ROWS = 200_000  # maximum number of rows used for a guess
 NEAR = 1.2  # of the sum of radii: touching, including measurement errors
@@ -14,7 +19,7 @@ ROUGH = 3.1  # factor by which Hertz's forces may be wrong; gf and kgf are then 
 FORCE_FACTORS = {unit: FORCES[unit] for unit in "N mN uN kN gf kgf".split()}  # the others are too similar to these
 
 
-def decide_force_unit(mapped, ratio, off, seen, unknown):
+def decide_force_unit(mapped: MappedTable, ratio: float, off: float, seen: str, unknown: str) -> None:
     """The unit by the `ratio` of the raw numbers to forces [N] that may be `off` by a factor; NaN for the reason `unknown`."""
     named = mapped.word("force_unit")
     fits = fitting_units({named: FORCES[named]} if named else FORCE_FACTORS, ratio, 1, 1 / off, off)
@@ -23,16 +28,16 @@ def decide_force_unit(mapped, ratio, off, seen, unknown):
     decide_unit(mapped, "force_unit", fits, seen, ("N", seen or unknown), UNCLEAR if confused else "sure")
 
 
-def hertz_force(known, radius, other, overlap):
+def hertz_force(known: Known, radius: Floats, other: Floats | float, overlap: Floats) -> Floats:
     """Hertz force between two grains, or a grain and a rigid wall (radius inf) [N]; NaN if E is unknown."""
     modulus = known.youngs_modulus / (1 - known.poisson_ratio**2) / np.where(np.isinf(other), 1, 2)
-    return 4 / 3 * modulus * np.sqrt(1 / (1 / radius + 1 / other)) * np.maximum(overlap, 0) ** 1.5
+    return np.asarray(4 / 3 * modulus * np.sqrt(1 / (1 / radius + 1 / other)) * np.maximum(overlap, 0) ** 1.5)
 
 
 class _Places:
     """The contacts in frames with known positions of the grains; their raw numbers taken as m and N."""
 
-    def __init__(self, table, grains):
+    def __init__(self, table: ImportTable, grains: GrainFrames) -> None:
         plain = table.changed(length_unit=guess("m", "stated", ""), force_unit=guess("N", "stated", ""))
         self.all = frames = import_contacts(plain, grains, Problems(), MAX_ROWS)
         at = grains.frames_of(table.map.word("frames_by", "plate"), frames.keys)[frames.frame]
@@ -44,11 +49,11 @@ class _Places:
         self.line = self.centre - position[at, other]
         self.distance, self.reach = np.linalg.norm(self.line, axis=1), self.radius + self.other_radius
 
-    def touching(self):
+    def touching(self) -> float:
         """Fraction of touching pairs, 0 without pairs."""
         return float(np.mean((self.distance < NEAR * self.reach)[self.pair])) if self.pair.any() else 0.0
 
-    def outward(self, box, axes=(1, 1, 1)):
+    def outward(self, box: tuple[float, float], axes: Sequence[int] = (1, 1, 1)) -> float:
         """+1 if forces repel grains as given, -1 if they do after reversal: from pairs, otherwise from nearby walls. `axes` are
         signs for the forces."""
         force = self.force * axes
@@ -64,7 +69,7 @@ class _Places:
         return float(np.mean(np.where(low == (force[sides, axis] > 0), 1, -1))) if len(sides) else 0.0
 
 
-def _guess_offset(table, grains):
+def _guess_offset(table: ImportTable, grains: GrainFrames) -> None:
     """The offset of the numbers with which nearly all pairs touch."""
     most, best = -1.0, 0
     for offset in (0, 1, -1, -2, -3, -4, -5, -6):  # Yade may number its walls before its grains
@@ -76,16 +81,16 @@ def _guess_offset(table, grains):
         share = _Places(trial, grains).touching()
         if share > most + 0.05:
             most, best = share, offset
-    share = f"{100 * most:.0f} % of the pairs touch then"
-    unclear = f"{share}: numbers of grains, frames or columns may be others"
-    told = ("sure", share) if most > 0.9 else (UNCLEAR, unclear) if most > 0 else ("likely", "no pairs to tell it by")
-    table.map["id_offset"] = guess(str(best), *told)
+    told = f"{100 * most:.0f} % of the pairs touch then"
+    unclear = f"{told}: numbers of grains, frames or columns may be others"
+    certainty, why = ("sure", told) if most > 0.9 else (UNCLEAR, unclear) if most > 0 else ("likely", "no pairs to tell it by")
+    table.map["id_offset"] = guess(str(best), certainty, why)
     set_walls(table.map, unknown_partners(table, grains, best), grains)
     if len(table.map.walls) > 6:
         table.map["partner"] = guess(table.map.word("partner"), UNCLEAR, "more than six of its numbers are no grains")
 
 
-def _guess_force_on(table, places, grains, box):
+def _guess_force_on(table: ImportTable, places: _Places, grains: GrainFrames, box: tuple[float, float]) -> None:
     """Guesses the sign of fz, for forces must be along the lines of centres, and the grain on which forces are."""
     mapped = table.map
     if not all(key in mapped for key in ("fx", "fy", "fz")):
@@ -102,7 +107,7 @@ def _guess_force_on(table, places, grains, box):
                                "so forces push grains apart" if clear else "forces neither push grains apart nor together")
 
 
-def _guess_sides(mapped, frames):
+def _guess_sides(mapped: MappedTable, frames: ContactFrames) -> None:
     pairs = np.column_stack([frames.frame, frames.grain, frames.partner])[frames.partner >= 0]
     listed = set(map(tuple, pairs.tolist()))
     twice = sum((frame, partner, grain) in listed for frame, grain, partner in listed)
@@ -110,7 +115,7 @@ def _guess_sides(mapped, frames):
                             f"{twice} of {len(listed)} pairs are there from either side")
 
 
-def _guess_point_unit(mapped, places, grains, known):
+def _guess_point_unit(mapped: MappedTable, places: _Places, grains: GrainFrames, known: Known) -> None:
     """Unit and direction of contact points, which are on the surfaces of their grains: z may have the opposite sign of the
     present guess."""
     if "x" not in mapped:
@@ -130,7 +135,7 @@ def _guess_point_unit(mapped, places, grains, known):
     state_voxel_size(mapped, known)
 
 
-def _guess_force_unit(table, places, grains, known):
+def _guess_force_unit(table: ImportTable, places: _Places, grains: GrainFrames, known: Known) -> None:
     mapped = table.map
     if "force_unit" in mapped:
         return
@@ -145,7 +150,7 @@ def _guess_force_unit(table, places, grains, known):
         mapped["force_unit"] = guess("N", "likely", "the grains are in metres, so the program counts in SI")
 
 
-def guess_contact_meaning(table, grains, known):
+def guess_contact_meaning(table: ImportTable, grains: GrainFrames, known: Known) -> None:
     if not grains.keys:
         table.map["id_offset"] = guess("0", UNCLEAR, "the grains' table cannot be read so far")
         return

@@ -1,10 +1,16 @@
 """Guesses which partners of contacts are walls, and which walls."""
+from typing import Any
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..number_text import shortest
-from .contacts import wall_partner
-from .mapping import BY_DIRECTION, UNCLEAR, WALLS, guess
+from .arrays import Ints
+from .contacts import ContactFrames, wall_partner
+from .grains import GrainFrames
+from .mapping import BY_DIRECTION, UNCLEAR, WALLS, Guess, Known, MappedTable, guess
 from .names import column_name
+from .rows import ImportTable
 
 NEAR = 1.3  # of a radius: at the wall, including measurement errors
 NOTHING = {"", "-", "--", "?", "na", "n/a", "#n/a", "nan", "+nan", "-nan", "null", "none"}  # not a wall
@@ -14,12 +20,13 @@ WORDS = {"floor": "floor bottom boden base zmin zlo", "plate": "plate top lid pi
 UPSIDE_DOWN = {"zmin": "plate", "zlo": "plate", "zmax": "floor", "zhi": "floor"}  # if z points downwards
 
 
-def unknown_partners(table, grains, offset, most=None, keys=("grain", "partner")):
+def unknown_partners(table: ImportTable, grains: GrainFrames, offset: int, most: int | None = None,
+                     keys: Sequence[str] = ("grain", "partner")) -> list[str]:
     """Partners in the first `most` rows that are not grains: possible names of walls, at most 20."""
     found = set()
     for key in keys:
         for part in table.parts:
-            column = part.find(table.map.word(key))
+            column = part.columns.index(table.map.word(key))
             numbers = part.numbers(column)[:most]
             texts = {part.text(row, column) for row in np.flatnonzero(np.isnan(numbers))}
             numbers = numbers[(grains.number_of(numbers + offset) < 0) & (np.abs(numbers) < 2e9)]
@@ -27,7 +34,7 @@ def unknown_partners(table, grains, offset, most=None, keys=("grain", "partner")
     return sorted(found - {*WALLS})[:20]
 
 
-def set_walls(mapped, names, grains):
+def set_walls(mapped: MappedTable, names: list[str], grains: GrainFrames) -> None:
     """Walls from their names or, if those are unknown, from the direction of their forces."""
     mapped.walls = {}
     for name in names:
@@ -37,25 +44,25 @@ def set_walls(mapped, names, grains):
         mapped.walls[name] = guess(word, "likely", "no grain has this number" if word == BY_DIRECTION else "its name")
 
 
-def _names_of(frames, walls, contacts):
+def _names_of(frames: ContactFrames, walls: dict[str, Guess], contacts: Ints) -> list[str]:
     """The name of the wall of each of these contacts: in the column of the partner, or of the grain."""
-    rows, names = frames.rows, np.full(len(contacts), "", object)
+    rows, names = frames.rows, [""] * len(contacts)
     for key in ("grain", "partner"):
-        numbers = rows.number(key, np.zeros(len(rows), bool))
+        numbers = rows.number(key, np.zeros(len(rows), np.bool_))
         for i, row in enumerate(frames.row[contacts]):
             name = shortest(numbers[row]) if np.isfinite(numbers[row]) else rows.text(row, key)
             names[i] = name if name in walls else names[i]
     return names
 
 
-def guess_walls(table, frames, grains, known):
+def guess_walls(table: ImportTable, frames: ContactFrames, grains: GrainFrames, known: Known) -> None:
     """Walls that only have a number: determined by the common direction of nearly all their forces. Unclear if the grains do not
     touch the wall, because a grain may be missing."""
     mapped, box = table.map, known.box
     if not mapped.walls:
         return
     mine = np.flatnonzero(frames.partner < 0)[:5000]
-    names, walls, grain = _names_of(frames, mapped.walls, mine), frames.partner[mine], frames.grain[mine]
+    names, walls, grain = np.array(_names_of(frames, mapped.walls, mine), object), frames.partner[mine], frames.grain[mine]
     frame = grains.frames_of(mapped.word("frames_by", "plate"), frames.keys)[frames.frame[mine]]
     position, radius = np.array(grains.position), grains.diameter / 2
     tops = (position[:, :, 2] + radius).max(axis=1)

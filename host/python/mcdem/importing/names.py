@@ -7,7 +7,7 @@ import pint
 _units = pint.UnitRegistry()
 
 
-def _factors(words, base):
+def _factors(words: str, base: str) -> dict[str, float]:
     return {word: _units.Quantity(1, word).to(base).magnitude for word in words.split()}
 
 
@@ -77,7 +77,7 @@ class ColumnName(NamedTuple):
     unknown: str = ""  # a unit in brackets of another quantity, or of an unknown one; without brackets of a pressure or a fraction
 
     @property
-    def quantity(self):
+    def quantity(self) -> str:
         """What the name says that the column has: a length, a force, a time, a pressure or a fraction; empty if it says nothing."""
         of_units = {"a length": self.unit in LENGTH_WORDS, "a force": self.unit in FORCES, "a time": self.unit in TIMES,
                     "a pressure": _is_pressure(self.unknown) or not (self.unit or self.unknown) and self.base in PRESSURE_NAMES.split(),
@@ -85,20 +85,20 @@ class ColumnName(NamedTuple):
         return next((quantity for quantity, is_so in of_units.items() if is_so), "")
 
 
-def _known_unit(word):
+def _known_unit(word: str) -> str:
     """Lengths also cubed, as volumes have them: "mm^3", "mm3"."""
     word = re.sub(r"(\^?3|³)$", "", word)
     word = SYNONYMS.get(word, SYNONYMS.get(word.lower(), word))
     return word if word in LENGTH_WORDS or word in FORCES or word in TIMES else ""
 
 
-def _is_pressure(word):
+def _is_pressure(word: str) -> bool:
     """"kPa", "N/mm2", "kgf/cm^2"."""
     force, _, area = word.partition("/")
     return word in PRESSURES or (len(word) > 2 and word in {known.lower() for known in PRESSURES}) or _known_unit(force) in FORCES and re.fullmatch(r"[mcd]?m(\^?2|²)", area) is not None
 
 
-def column_name(name):
+def column_name(name: str) -> ColumnName:
     """"Kraft [mN]", "x_mm", "Volume (mm^3)" and "z in mm" name units, "c_force[1]" does not."""
     name, unit, unknown = name.strip(), "", ""
     brackets = re.fullmatch(r"(.+)[\[(]([^\[(]*)[\])]", name, re.DOTALL)
@@ -115,7 +115,7 @@ def column_name(name):
     return ColumnName(re.sub(r"[^a-z0-9]", "", name.translate(_LETTERS).lower()), unit, "" if unit else unknown)
 
 
-def other_quantity(name, wanted):
+def other_quantity(name: str | ColumnName, wanted: str) -> str:
     """Why a column of this name is none of the `wanted` quantity, "force" or "length", and the remedy; empty if the name does not say so."""
     name = column_name(name) if isinstance(name, str) else name
     quantity = name.quantity
@@ -127,9 +127,9 @@ def other_quantity(name, wanted):
     return f"a name says {says} {wanted}: {remedy.get((quantity, wanted), 'change the table')}, and name the column by the unit of the {wanted}"
 
 
-def columns_by_key(role, columns):
+def columns_by_key(role: str, columns: list[str]) -> dict[str, list[str]]:
     """The columns that names tell for the keys of a table of that role."""
-    found = {}
+    found = dict[str, list[str]]()
     for column in columns:
         base = column_name(column).base
         for key in [key for key, words in WORDS[role] if base in words.split()][:1]:

@@ -98,9 +98,9 @@ class _Reader:
             elif not key and table.role != "unused":
                 self.wrong((*where, name), f"{quoted(name)} must be a key of a table of {table.role}, got another: remove it, or choose "
                                            "from " + ", ".join(key.name for key in KEYS[table.role]))
-        for name in must_be_stated(table):
-            if name not in node:
-                self.wrong(where, f"{name} must be stated: {meaning_of(find_key(table.role, name))}, got none")
+        for key in must_be_stated(table):
+            if key.name not in node:
+                self.wrong(where, f"{key.name} must be stated: {meaning_of(key)}, got none")
         return table
 
 
