@@ -3,7 +3,7 @@ import unittest
 
 from lab import ImportCase, Style, lab_contacts, lab_grains, lab_plate
 from mcdem.importing.guess import guess_tables, mapping_of, wrong_rows
-from mcdem.importing.mapping import mapping_text
+from mcdem.importing.mapping import Guess, mapping_text
 from mcdem.importing.read_mapping import parse_mapping
 
 
@@ -95,6 +95,15 @@ class Errors(ImportCase):
         for key in ("id_offset", "force_on", "length_unit", "force_unit"):
             self.assertEqual(contacts[key].certainty, "unclear", key)
         self.expect_among(wrong_rows(tables), 'must be a finite number, got "NaN"')
+
+    def test_a_table_of_grains_must_have_one(self):
+        tables = self.guess(self.write_lab())
+        self.of(tables, "grains")["where"] = Guess(["Guete"])
+        text = mapping_text(mapping_of(tables))
+        header, *rows = lab_grains(self.truth).splitlines()
+        self.write("koerner.csv", "\n".join([header + ";Guete", *(row + ";0" for row in rows), ""]))
+        self.expect_one(self.problems_of(lambda: self.imported(self.by_mapping(text))),
+                        "koerner.csv: must have grains, got 0 in all rows of the column for where")
 
     def test_missing_tables_are_reported(self):
         self.expect_one(self.problems_of(lambda: self.imported(self.guess(self.write_lab()[1:2]))),

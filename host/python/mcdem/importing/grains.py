@@ -122,5 +122,7 @@ def import_grains(tables: list[ImportTable], problems: Problems) -> GrainFrames:
     frames = GrainFrames()
     for table in tables:
         _read_table(table, frames, problems)
+    if tables and not frames.keys and not problems.count:
+        problems.add(tables[0].map.files[0], "must have grains, got 0 in all rows of the column for where: see the mapping")
     frames.index = FrameIndex(frames.keys)
     return frames

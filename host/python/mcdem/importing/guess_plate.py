@@ -66,8 +66,8 @@ def _guess_downwards(mapped: MappedTable, rows: PlateRows) -> None:
     else:
         reverse = first > 0 or (first == 0 and z[0] > (z.min() + z.max()) / 2)
         way = "first moves " + ("up" if first > 0 else "down") if first else "begins under force"
-        mapped[place] = guess("-" + word if reverse else word, UNCLEAR, f"{ends}, where the plate {way}, and a plate that sticks is pulled on its way "
-                              "back: does the column count upwards? Then write a - before its name, otherwise none")
+        mapped[place] = guess("-" + word if reverse else word, UNCLEAR, f"{ends}, where the plate {way}, and a plate that sticks is pulled on "
+                              "its way back: does the column count upwards? Then write a - before its name, otherwise none")
 
 
 def _guess_origin(mapped: MappedTable, plate: _Plate, factors: dict[str, float], unit_of_grains: str) -> None:

@@ -58,8 +58,8 @@ def _guess_named_centres(table: ImportTable, numbers: Floats, whole: Bools, rows
     if found:
         _, key, ratio, c = min(found)
         mapped.role_certainty = "likely"
-        mapped[key] = guess(part.columns[c], UNCLEAR, f"no name says it, and the nearest neighbours are {ratio:.3g} times its numbers apart (diameters: "
-                            "about 1, radii: 2): is it the size? Where no column has it, write same_diameter in its place")
+        mapped[key] = guess(part.columns[c], UNCLEAR, f"no name says it, and the nearest neighbours are {ratio:.3g} times its numbers apart "
+                            "(diameters: about 1, radii: 2): is it the size? Where no column has it, write same_diameter in its place")
 
 
 def guess_grains_by_values(table: ImportTable) -> None:

@@ -64,8 +64,8 @@ def _length_keys(meaning: str = "") -> list[Key]:
             Key("voxel_size", "number", "edge of a voxel [m], where length_unit is voxel")]
 
 
-_FRAMES_BY = ("plate: frames have the plate's numbers, times or steps; nearest: the row with the nearest time; order: the first is the plate's first row, and so on; rows: "
-              "they are the plate's rows, counted from 0")
+_FRAMES_BY = ("plate: frames have the plate's numbers, times or steps; nearest: the row with the nearest time; order: the first is the "
+              "plate's first row, and so on; rows: they are the plate's rows, counted from 0")
 KEYS: dict[str, list[Key]] = {
     "plate": [
         Key("frame", "column", "a row's frame number, time or step; without it the rows count"),

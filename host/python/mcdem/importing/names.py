@@ -27,6 +27,10 @@ DOWNWARDS = "depth tiefe profondeur zdown zdownwards"  # names of a downward z
 COUNTED = {"time": "time t zeit temps", "step": "step timestep schritt iter", "scan": "frame scan image snapshot bild state"}
 _FRAME = ("frame", " ".join(COUNTED.values()))
 
+# Names of a coordinate, @, of centres; also centroid0 to 2 for z, y, x, the axes of an image.
+_CENTRES = ("@ @c c@ pos@ @pos centroid@ @centroid center@ @center centre@ @centre coord@ @coord com@ @com @u p@ position@ barycenter@ "
+            "centerofmass@")
+
 # Keys of the mapping and their names without units and punctuation; the first match is used.
 WORDS = {
     "plate": [
@@ -45,11 +49,10 @@ WORDS = {
     "grains": [
         _FRAME,
         ("grain", "grain id particle label index korn teilchen nr no number atom particleid grainid bead beadid"),
-        ("x", "x xc cx posx xpos centroidx xcentroid centerx xcenter centrex xcentre coordx xcoord comx xcom xu px positionx centroid2 barycenterx centerofmassx"),
-        ("y", "y yc cy posy ypos centroidy ycentroid centery ycenter centrey ycentre coordy ycoord comy ycom yu py positiony centroid1 barycentery centerofmassy"),
-        ("z", "z zc cz posz zpos centroidz zcentroid centerz zcenter centrez zcentre coordz zcoord comz zcom zu pz positionz centroid0 barycenterz centerofmassz "
-              + DOWNWARDS),
-        ("diameter", "diameter d dia diam durchmesser diametre equivalentdiameterarea equivalentdiameter eqdiameter equivdiam equivalentsphericaldiameter"),
+        *((axis, " ".join(word.replace("@", axis) for word in _CENTRES.split()) + f" centroid{2 - n}" + f" {DOWNWARDS}" * (axis == "z"))
+          for n, axis in enumerate("xyz")),
+        ("diameter", "diameter d dia diam durchmesser diametre equivalentdiameterarea equivalentdiameter eqdiameter equivdiam "
+                     "equivalentsphericaldiameter"),
         ("radius", "radius r rad radii halbmesser rayon equivalentradius equivalentradii equivradius equivradii eqradius"),
         ("volume", "volume volume3d volumen vol"),
     ],
@@ -95,7 +98,9 @@ def _known_unit(word: str) -> str:
 def _is_pressure(word: str) -> bool:
     """"kPa", "N/mm2", "kgf/cm^2"."""
     force, _, area = word.partition("/")
-    return word in PRESSURES or (len(word) > 2 and word in {known.lower() for known in PRESSURES}) or _known_unit(force) in FORCES and re.fullmatch(r"[mcd]?m(\^?2|²)", area) is not None
+    if word in PRESSURES or len(word) > 2 and word in {known.lower() for known in PRESSURES}:
+        return True
+    return _known_unit(force) in FORCES and re.fullmatch(r"[mcd]?m(\^?2|²)", area) is not None
 
 
 def column_name(name: str) -> ColumnName:
