@@ -19,7 +19,6 @@ from mcdem.results.engine_run import run_of
 from mcdem.results.read import read_run
 
 INDEPENDENT, ALONE = ("contact.model", "independent"), ("contact.model", "mc_dem")
-PERFECT = ["--position-error", "0", "--diameter-error", "0", "--force-error", "0", "--force-threshold", "0"]
 NOISY = {"force_bias": 0.03, "threshold_shift": -0.01, "position_bias": 0.002, "strain_offset": 1e-4}
 FROM_RUN = ["experiment", "from-run"]
 CHECK = ["experiment", "check"]
@@ -58,19 +57,6 @@ class FromRun(Made):
             self.assertIn(part, checked)
         self.assertLessEqual(max(map(len, checked.splitlines())), 110)
         self.done("compare", "a", "--against", "e")
-
-    def test_a_perfect_instrument_reproduces_the_run(self):
-        self.run_small(AT_REST)
-        self.from_run("e", "--replica", "1", *PERFECT, "--strain-offset", "1e-3")
-        seen = read_experiment(self.folder / "e").recording
-        truth = read_run("a", contacts=True, positions=True).recordings[1]
-        np.testing.assert_array_equal(seen.diameter, truth.diameter)
-        np.testing.assert_array_equal(seen.scans.top_force, truth.scans.top_force)
-        np.testing.assert_allclose(seen.scans.plate_z, truth.scans.plate_z + 1e-3, rtol=1e-15)
-        np.testing.assert_allclose(seen.scans.position, truth.scans.position, atol=1e-15)
-        for found, wanted in zip(seen.scans.contacts, truth.scans.contacts, strict=True):
-            for name in ("grain", "partner", "force"):
-                np.testing.assert_array_equal(getattr(found, name), getattr(wanted, name))
 
     def test_the_folder_returns_what_the_instrument_read(self):
         """Averages over contacts, and forces on walls as sums of those, are the same from the tables as from the instrument."""

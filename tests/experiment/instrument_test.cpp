@@ -160,25 +160,39 @@ TEST(measured, biases_scale_lengths_forces_and_plate_positions) {
     EXPECT_EQ(seen.diameter, real.diameter);
 }
 
-TEST(measured, gauge_drifts_with_the_path_length_of_the_plate) {
+/// One cycle of a plate that starts at 0.1 m: its heights, the forces on it, and the number of scans of
+/// loading.
+Recording one_cycle(const std::vector<double>& height, const std::vector<double>& force,
+                    std::size_t loading) {
     Recording real = truth();
-    const double path[] = {0, 0.01, 0.03, 0.04};  // down, down, up
-    const double height[] = {0.1, 0.09, 0.07, 0.08};
     real.plate_start = 0.1;
-    real.scans.resize(4, real.scans.back());
-    for (int s = 0; s < 4; ++s) {
-        real.scans[s].plate_z = height[s];
-        real.scans[s].cycle = 0;
+    real.scans.resize(height.size(), real.scans.back());
+    for (std::size_t s = 0; s < height.size(); ++s) {
+        Scan& scan = real.scans[s];
+        scan.cycle = 0;
+        scan.phase = s < loading ? Phase::load : Phase::unload;
+        scan.plate_z = height[s];
+        scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() = force[s];
     }
-    Instrument drifting;
-    drifting.gauge_drift = 0.2;
-    const Recording seen = measured(real, drifting, 1);
-    for (int s = 0; s < 4; ++s) {
-        EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), (1 + 0.2 * path[s] / 0.06) * real.scans[s].top_force());
+    return real;
+}
+
+void expect_read(const Recording& real, const Instrument& instrument, const std::vector<double>& read) {
+    const Recording seen = measured(real, instrument, 1);
+    for (std::size_t s = 0; s < read.size(); ++s) {
+        EXPECT_NEAR(seen.scans[s].top_force(), read[s], 1e-12) << s;
         EXPECT_EQ(seen.scans[s].plate_z, real.scans[s].plate_z);
     }
-    real.scans.resize(1);
-    EXPECT_EQ(measured(real, drifting, 1).scans[0].top_force(), real.scans[0].top_force());
+}
+
+TEST(measured, gain_and_zero_of_a_gauge_drift_with_the_path_length_of_the_plate) {
+    const Recording real = one_cycle({0.1, 0.09, 0.07, 0.08}, {0, 0.5, 2, 0.25}, 4);  // down, down, up
+    Instrument gain, zero;
+    gain.gauge_drift = 0.2;
+    zero.zero_drift = -0.03;  // of the largest force
+    expect_read(real, gain, {0, 0.5 * (1 + 0.2 / 6), 2 * (1 + 0.2 / 2), 0.25 * (1 + 0.2 / 1.5)});
+    expect_read(real, zero, {0, 0.5 - 0.06 / 6, 2 - 0.06 / 2, 0.25 - 0.06 / 1.5});
+    expect_read(one_cycle({0.1}, {3}, 1), gain, {3});
 }
 
 TEST(measured, gauge_drift_does_not_depend_on_the_end_of_the_recording) {
@@ -198,71 +212,29 @@ TEST(measured, gauge_drift_does_not_depend_on_the_end_of_the_recording) {
     for (int s = 0; s < 7; ++s) EXPECT_EQ(cut.scans[s].top_force(), whole.scans[s].top_force());
 }
 
-TEST(measured, zero_drifts_by_a_fraction_of_the_largest_force) {
-    Recording real = truth();
-    const double path[] = {0, 0.01, 0.03, 0.04};  // down, down, up
-    const double height[] = {0.1, 0.09, 0.07, 0.08}, force[] = {0, 0.5, 2, 0.25};
-    real.plate_start = 0.1;
-    real.scans.resize(4, real.scans.back());
-    for (int s = 0; s < 4; ++s) {
-        real.scans[s].plate_z = height[s];
-        real.scans[s].cycle = 0;
-        real.scans[s].wall_force[static_cast<std::size_t>(Wall::plate)].z() = force[s];
-    }
-    Instrument drifting;
-    drifting.zero_drift = -0.03;
-    const Recording seen = measured(real, drifting, 1);
-    for (int s = 0; s < 4; ++s)
-        EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), force[s] - 0.03 * 2 * path[s] / 0.06);
-}
-
 TEST(measured, a_gauge_with_hysteresis_reads_another_force_while_unloading) {
-    Recording real = truth();
-    real.scans.resize(6, real.scans.back());
-    const double force[] = {0, 1, 4, 2, 1, 0}, read[] = {0, 1, 4, 2.4, 1.3, 0};
-    for (int s = 0; s < 6; ++s) {
-        real.scans[s].phase = s < 3 ? Phase::load : Phase::unload;
-        real.scans[s].wall_force[static_cast<std::size_t>(Wall::plate)].z() = force[s];
-    }
     Instrument instrument;
     instrument.gauge_hysteresis = 0.1;
-    const Recording seen = measured(real, instrument, 1);
-    for (int s = 0; s < 6; ++s) EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), read[s]) << s;
+    expect_read(one_cycle(std::vector<double>(6, 0.09), {0, 1, 4, 2, 1, 0}, 3), instrument,
+                {0, 1, 4, 2.4, 1.3, 0});
 }
 
 TEST(measured, a_gauge_also_reads_the_friction_of_the_guide_once_the_plate_moves) {
-    Recording real = truth();
-    real.plate_start = 0.1;
-    real.scans.resize(5, real.scans.back());
-    const double height[] = {0.1, 0.09, 0.08, 0.09, 0.1}, force[] = {0, 1, 4, 1, 0},
-                 read[] = {0, 1.2, 4.2, 0.8, -0.2};
-    for (int s = 0; s < 5; ++s) {
-        real.scans[s].phase = s < 3 ? Phase::load : Phase::unload;
-        real.scans[s].plate_z = height[s];
-        real.scans[s].wall_force[static_cast<std::size_t>(Wall::plate)].z() = force[s];
-    }
     Instrument instrument;
     instrument.guide_friction = 0.05;
-    const Recording seen = measured(real, instrument, 1);
-    for (int s = 0; s < 5; ++s) EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), read[s]) << s;
+    expect_read(one_cycle({0.1, 0.09, 0.08, 0.09, 0.1}, {0, 1, 4, 1, 0}, 3), instrument,
+                {0, 1.2, 4.2, 0.8, -0.2});
 }
 
 TEST(measured, a_late_top_force_is_that_of_an_earlier_plate) {
-    Recording real = truth();
-    const double height[] = {0.1, 0.09, 0.07, 0.07, 0.08, 0.1};  // the plate rests at the fourth scan
-    const double force[] = {0, 0.5, 2, 1.8, 1, 0};
-    const double late[] = {0, 0.25, 1.625, 1.8, 1.4, 0.25}, later[] = {0, 0, 0.875, 1.8, 1.625, 0.75};
-    real.plate_start = 0.1;
-    real.scans.resize(6, real.scans.back());
-    for (int s = 0; s < 6; ++s) {
-        real.scans[s].plate_z = height[s];
-        real.scans[s].wall_force[static_cast<std::size_t>(Wall::plate)].z() = force[s];
-    }
+    // The plate rests at the fourth scan.
+    const std::vector<double> force{0, 0.5, 2, 1.8, 1, 0}, late{0, 0.25, 1.625, 1.8, 1.4, 0.25},
+        later{0, 0, 0.875, 1.8, 1.625, 0.75};
+    const Recording real = one_cycle({0.1, 0.09, 0.07, 0.07, 0.08, 0.1}, force, 4);
     Instrument instrument;
     for (const auto& [lag, read] : {std::pair{0.0, force}, {0.005, late}, {0.015, later}}) {
         instrument.force_lag = lag;
-        const Recording seen = measured(real, instrument, 1);
-        for (int s = 0; s < 6; ++s) EXPECT_NEAR(seen.scans[s].top_force(), read[s], 1e-12) << lag << ' ' << s;
+        expect_read(real, instrument, read);
     }
 }
 

@@ -120,11 +120,6 @@ class Errors(ImportCase):
         self.write("koerner.csv", "".join(line for line in lab_grains(self.truth).splitlines(keepends=True) if ";17;" not in line))
         self.expect_among(self.unclear(self.guess(files)), '"17" must be confirmed, got "?by direction"')
 
-    def test_units_that_are_not_known_must_be_confirmed(self):
-        files = self.write_lab()
-        self.write("kraft.csv", lab_plate(self.truth).replace("[mN]", "[MPa]"))
-        self.expect_among(self.unclear(self.guess(files)), "a name says [MPa], which is a pressure and no force: multiply by the area")
-
     def test_what_is_not_a_number_in_the_plates_table_is_named_by_its_line(self):
         files = self.write_lab()
         for nothing in ("NaN", "nan", "inf", "", "-"):

@@ -74,7 +74,8 @@ class Quantities(ImportCase):
             with self.subTest(name):
                 tables = self.plate(name)
                 self.assertNotIn("top_force", self.of(tables, "plate"))
-                self.expect_among(self.unclear(tables), 'role must be confirmed, got "?plate"', "multiply by the area that it acts on")
+                self.expect_among(self.unclear(tables), 'role must be confirmed, got "?plate": no column is named as top_force, which a plate',
+                                  "multiply by the area that it acts on")
                 text = self.accepted(tables, ("# top_force =", f'top_force = "{name}"  #')) + 'force_unit = "N"\nforce_sign = "+"\n'
                 self.expect_among(self.problems_of(lambda: self.imported(self.by_mapping(text))), f'"{name}" must be a force')
 

@@ -59,15 +59,6 @@ class Forces(ImportCase):
             self.write("kraft.csv", lab_plate(self.truth, Style(force=100)).replace("mN", unit))
             self.assertEqual(self.of(self.guess(files), "plate")["force_unit"].certainty, certainty)
 
-    def test_of_a_plate_are_no_pressures(self):
-        files = self.write_lab()
-        self.write("kraft.csv", Style(",", ".").table(["Time (s)", "height_mm", "Pressure (kPa)"], (
-            (0.5 * s.frame, 1e3 * s.plate_z, s.top_force) for s in self.truth.scans)))
-        tables = self.guess(files)
-        self.assertNotIn("top_force", self.of(tables, "plate"))
-        self.assertEqual(self.of(tables, "plate").word("length_unit"), "mm")
-        self.expect_among(self.unclear(tables), 'role must be confirmed, got "?plate": no column is named as top_force, which a plate')
-
     def test_of_several_columns_with_one_name_must_be_confirmed(self):
         files = self.write_lab()
         self.write("kraft.csv", Style(",", ".").table(["height_mm", "Force (N)", "Force (N)"], (

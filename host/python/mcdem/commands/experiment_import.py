@@ -32,7 +32,6 @@ Examples:
   mcdem experiment import data/second/* --mapping out/lab/mapping.toml --metadata data/known.toml --out out/second"""
 
 LARGEST_VOXEL = 1  # [m]
-LARGEST_TEXT = 1_000_000  # bytes of the metadata
 MAPPING = "mapping.toml"
 
 
@@ -78,17 +77,10 @@ def run(options: argparse.Namespace) -> int:
 def _settings(options: argparse.Namespace, problems: "Problems") -> "Experiment":
     """Values that are not in the tables; their problems are reported together with all others."""
     from ..experiment.settings import parse_settings
-    text = _bytes_of(options.metadata) if options.metadata else b""
+    from ..importing.read_mapping import small_file
+    text = small_file(options.metadata, "a text") if options.metadata else b""
     settings = parse_settings(text, options.metadata or "--set", options.overrides, problems)
     return replace(settings, name=options.name or settings.name or os.path.basename(os.path.abspath(options.out)))
-
-
-def _bytes_of(file: str) -> bytes:
-    from ..files import read_input
-    from ..look import is_file, is_there
-    if not is_file(file) or os.stat(file).st_size > LARGEST_TEXT:
-        raise InputError(f"{file}: must be a text of at most 1 MB, got {'something else' if is_there(file) else 'no such file'}")
-    return read_input(file)
 
 
 def _known(settings: "Experiment", voxel_size: float | None) -> "Known":

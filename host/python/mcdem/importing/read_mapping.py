@@ -113,12 +113,17 @@ def parse_mapping(text: str, file: str) -> list[MappedTable]:
     return _Reader(document, file).read(document.root)
 
 
-def text_of_mapping(file: str) -> str:
-    """Raises InputError, OSError."""
+def small_file(file: str, what: str) -> bytes:
+    """Of at most 1 MB. Raises InputError, OSError."""
     if not is_file(file) or os.path.getsize(file) > LARGEST:
         got = "something else" if is_there(file) else "no such file"
-        raise InputError(f"{file}: must be a mapping of at most 1 MB, got {got}")
+        raise InputError(f"{file}: must be {what} of at most 1 MB, got {got}")
+    return read_whole(file)
+
+
+def text_of_mapping(file: str) -> str:
+    """Raises InputError, OSError."""
     try:
-        return read_whole(file).decode().replace("\r\n", "\n")
+        return small_file(file, "a mapping").decode().replace("\r\n", "\n")
     except UnicodeDecodeError:
         raise InputError(f"{file}: must be text in UTF-8") from None
