@@ -9,7 +9,8 @@ import sys
 
 ROOMS = ("results", "experiment", "importing", "observe", "calibration", "diagnosis", "convergence", "report", "challenge", "commands",
          "checked_json.py", "command.py", "comparing.py", "diagnosing.py", "errors.py", "files.py", "json_text.py", "look.py", "manifest.py",
-         "number_text.py", "outputs.py", "parts.py", "problems.py", "program.py", "progress.py", "toml_lines.py", "warn.py")
+         "number_text.py", "outputs.py", "parts.py", "problems.py", "program.py", "progress.py", "toml.py", "toml_lines.py",
+         "warn.py")
 
 
 def main():

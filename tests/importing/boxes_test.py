@@ -75,7 +75,7 @@ class Boxes(ImportCase):
     def test_reversed_axes_are_compared_as_they_are_placed(self):
         for scan in self.truth.scans:
             scan.position = np.array([1, 1, -1]) * scan.position
-        down = self.dump("ff ff fs\n0 1\n0 1\n-1 0")
+        down = self.dump("ff ff fs\n0 1\n0 1\n-1 -0.001")  # the upper face follows the grains
         self.expect_found(None, down)
         self.assertEqual(self.of(self.guess([self.path("plate.csv"), self.path("grains.dump")]), "grains").word("z"), "-z")
 

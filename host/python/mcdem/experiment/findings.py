@@ -3,6 +3,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import partial
 
 import numpy as np
 
@@ -25,19 +26,7 @@ class Finding:
 
 
 Findings = Iterator[Finding]
-
-
-def note(about: str, text: str) -> Finding:
-    return Finding(Severity.note, about, text)
-
-
-def missing(about: str, text: str) -> Finding:
-    return Finding(Severity.missing, about, text)
-
-
-def odd(about: str, text: str) -> Finding:
-    return Finding(Severity.odd, about, text)
-
+note, missing, odd = (partial(Finding, severity) for severity in Severity)  # of a file and a text
 
 # The number of a frame, or of the frame of each item; which items count; the words for an item.
 Part = tuple[int | Ints, Bools, Callable[[int], str]]

@@ -1,7 +1,7 @@
 """Boxes in the files of simulation programs, and whether they contradict the container of the experiment."""
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-from collections.abc import Sequence
 
 import numpy as np
 

@@ -3,8 +3,8 @@ import contextlib
 import io
 import math
 import re
-from typing import TYPE_CHECKING, Any, NoReturn
 from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 

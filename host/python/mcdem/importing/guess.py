@@ -1,8 +1,8 @@
 """Guesses the meaning of tables. A guess is sure if a name states it and the numbers do not contradict, or if the numbers allow
 only one possibility; it is unclear if they allow several."""
 import re
-from dataclasses import replace
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 

@@ -7,7 +7,7 @@ from .arrays import Bools, Floats, Ints
 from .grains import GrainFrames
 from .guess_lengths import nearest_over_radii
 from .mapping import UNCLEAR, MappedTable, guess
-from .names import WORDS, column_name, columns_by_key, other_quantity
+from .names import column_name, columns_by_key, other_quantity
 from .rows import ImportTable
 from .tables import Table
 

@@ -1,5 +1,4 @@
 """Guesses which partners of contacts are walls, and which walls."""
-from typing import Any
 from collections.abc import Sequence
 
 import numpy as np

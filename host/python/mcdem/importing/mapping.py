@@ -1,9 +1,9 @@
 """The mapping of table columns: guessed, and written as mapping.toml for the user to correct (read_mapping reads it)."""
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
-from collections.abc import Iterator
 
 from ..problems import to_number
 from ..toml import toml_value

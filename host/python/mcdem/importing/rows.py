@@ -1,8 +1,8 @@
 """Rows of a table's files as arrays, by keys of the mapping; frames by number, time or step."""
 import os
 import re
-from typing import Any
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd

@@ -7,8 +7,8 @@ import itertools
 import math
 import re
 from collections import Counter
-from typing import TYPE_CHECKING, NamedTuple
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..problems import Problems, quoted, to_number
 
