@@ -7,7 +7,7 @@ import unittest
 from dataclasses import asdict
 
 import numpy as np
-from forgeries import FORGERIES, forge, number, without_grains
+from forgeries import FORGERIES, forge, without_grains
 from small_run import AT_REST, STAGES, CommandCase, mcdem_command
 
 from mcdem import _engine
@@ -18,7 +18,7 @@ from mcdem.experiment.write import write_experiment
 from mcdem.results.engine_run import run_of
 from mcdem.results.read import read_run
 
-INDEPENDENT, ALONE = ("contact.model", "independent"), ("contact.model", "mc_dem")
+INDEPENDENT = "contact.model", "independent"
 NOISY = {"force_bias": 0.03, "threshold_shift": -0.01, "position_bias": 0.002, "strain_offset": 1e-4}
 FROM_RUN = ["experiment", "from-run"]
 CHECK = ["experiment", "check"]
@@ -90,16 +90,6 @@ class FromRun(Made):
         np.testing.assert_array_equal(packed.recording.scans.position, plain.recording.scans.position)
         np.testing.assert_array_equal(packed.recording.scans.mean_force, plain.recording.scans.mean_force)
 
-    def test_data_that_a_run_lacks_are_named(self):
-        self.run_small(ALONE)
-        self.assertIn("frame 0 is 2.5 mm below the plate's start", self.from_run("e").err)
-        self.assertIn("the packing at rest before the first stroke", self.checked("e"))
-        shutil.rmtree("a")
-        self.run_small(AT_REST, ALONE, ("output.positions", False))
-        self.assertIn("output.positions = true", self.from_run("bare").err)
-        self.assertEqual(set(os.listdir("bare")), {"experiment.toml", "plate.csv", "SHA256SUMS"})
-        self.assertIn("diameters and positions: ", self.checked("bare"))
-
 
 class Programmes(Made):
     def run_stages(self, *settings):
@@ -118,12 +108,6 @@ class Programmes(Made):
         self.assertIn("suspicious data: nothing", checked)
         self.assertIn("a programme of 4 stages in", checked)
         self.expect_sums("e")
-
-    def test_have_times_that_rise(self):
-        self.run_stages(AT_REST)
-        forge("a/run.h5", number("time", 4, 0))
-        self.refused([*FROM_RUN, "a/run.h5", "--out", "f"], "time_s must rise from row to row, got 0 after")
-        self.assertFalse((self.folder / "f").exists())
 
     def test_have_one_frame_for_each_scan(self):
         self.run_stages()
