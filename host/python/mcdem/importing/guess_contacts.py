@@ -3,20 +3,26 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..number_text import shortest
 from ..problems import Problems
-from .arrays import Floats
-from .contacts import ContactFrames, import_contacts
+from .arrays import Floats, Ints
+from .contacts import ContactFrames, import_contacts, wall_partner
 from .grains import GrainFrames
 from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
-from .guess_walls import guess_walls, set_walls, unknown_partners
-from .mapping import UNCLEAR, Known, MappedTable, guess, negated
-from .names import FORCES
+from .mapping import BY_DIRECTION, UNCLEAR, WALLS, Guess, Known, MappedTable, guess, negated
+from .names import FORCES, column_name
 from .rows import ImportTable
 
 MAX_ROWS = 200_000  # maximum number of rows used for a guess
 NEAR = 1.2  # of the sum of radii: touching, including measurement errors
 ROUGH = 3.1  # factor by which Hertz's forces may be wrong; gf and kgf are then confused with mN and N
 FORCE_FACTORS = {unit: FORCES[unit] for unit in "N mN uN kN gf kgf".split()}  # the others are too similar to these
+NEAR_WALL = 1.3  # of a radius: at the wall, including measurement errors
+NOTHING = {"", "-", "--", "?", "na", "n/a", "#n/a", "nan", "+nan", "-nan", "null", "none"}  # not a wall
+WALL_WORDS = {"floor": "floor bottom boden base zmin zlo", "plate": "plate top lid piston deckel platte stempel zmax zhi",
+              "x_min": "xmin left links xlo", "x_max": "xmax right rechts xhi", "y_min": "ymin front vorn ylo",
+              "y_max": "ymax back rear hinten yhi"}
+UPSIDE_DOWN = {"zmin": "plate", "zlo": "plate", "zmax": "floor", "zhi": "floor"}  # if z points downwards
 
 
 def decide_force_unit(mapped: MappedTable, ratio: float, off: float, seen: str, unknown: str) -> None:
@@ -69,15 +75,85 @@ class _Places:
         return float(np.mean(np.where(low == (force[sides, axis] > 0), 1, -1))) if len(sides) else 0.0
 
 
+def _unknown_partners(table: ImportTable, grains: GrainFrames, offset: int, most: int | None = None,
+                      keys: Sequence[str] = ("grain", "partner")) -> list[str]:
+    """Partners in the first `most` rows that are not grains: possible names of walls, at most 20."""
+    found = set()
+    for key in keys:
+        for part in table.parts:
+            column = part.columns.index(table.map.word(key))
+            numbers = part.numbers(column)[:most]
+            texts = {part.text(row, column) for row in np.flatnonzero(np.isnan(numbers))}
+            numbers = numbers[(grains.number_of(numbers + offset) < 0) & (np.abs(numbers) < 2e9)]
+            found |= {*map(shortest, np.unique(numbers)[:20])} | {text for text in sorted(texts)[:20] if text.lower() not in NOTHING}
+    return sorted(found - {*WALLS})[:20]
+
+
+def _set_walls(mapped: MappedTable, names: list[str], grains: GrainFrames) -> None:
+    """Walls from their names or, if those are unknown, from the direction of their forces."""
+    mapped.walls = {}
+    for name in names:
+        base = column_name(name).base
+        word = next((wall for wall, words in WALL_WORDS.items() if base in words.split()), BY_DIRECTION)
+        word = UPSIDE_DOWN.get(base, word) if grains.sign[2] < 0 else word
+        mapped.walls[name] = guess(word, "likely", "no grain has this number" if word == BY_DIRECTION else "its name")
+
+
+def _names_of(frames: ContactFrames, walls: dict[str, Guess], contacts: Ints) -> list[str]:
+    """The name of the wall of each of these contacts: in the column of the partner, or of the grain."""
+    rows, names = frames.rows, [""] * len(contacts)
+    for key in ("grain", "partner"):
+        numbers = rows.number(key, np.zeros(len(rows), np.bool_))
+        for i, row in enumerate(frames.row[contacts]):
+            name = shortest(numbers[row]) if np.isfinite(numbers[row]) else rows.text(row, key)
+            names[i] = name if name in walls else names[i]
+    return names
+
+
+def _guess_walls(table: ImportTable, frames: ContactFrames, grains: GrainFrames, known: Known) -> None:
+    """Walls that only have a number: determined by the common direction of nearly all their forces. Unclear if the grains do not
+    touch the wall, because a grain may be missing."""
+    mapped, box = table.map, known.box
+    if not mapped.walls:
+        return
+    mine = np.flatnonzero(frames.partner < 0)[:5000]
+    names, walls, grain = np.array(_names_of(frames, mapped.walls, mine), object), frames.partner[mine], frames.grain[mine]
+    frame = grains.frames_of(mapped.word("frames_by", "plate"), frames.keys)[frames.frame[mine]]
+    position, radius = np.array(grains.position), grains.diameter / 2
+    tops = (position[:, :, 2] + radius).max(axis=1)
+    places = np.where(walls == wall_partner("plate"), tops[frame], np.array([0, box[0], 0, box[1], 0, 0])[-1 - walls])
+    is_near = np.abs(position[frame, grain, (-1 - walls) // 2] - places) < NEAR_WALL * radius[grain]
+    offset = int(mapped.number("id_offset"))
+    for_grains, for_partners = (_unknown_partners(table, grains, offset, keys=[key]) for key in ("grain", "partner"))
+    for name, wall in mapped.walls.items():
+        placed = (names == name) & (frame >= 0)
+        all_of, touching = int(placed.sum()), int((placed & is_near).sum())
+        named = wall.word != BY_DIRECTION
+        if not named:
+            ways, counts = np.unique(walls[names == name], return_counts=True)
+            if len(ways) and counts.max() > 0.9 * counts.sum():
+                mapped.walls[name] = wall = guess(WALLS[-1 - ways[np.argmax(counts)]], "likely", f"{wall.why}; {counts.max()} of its "
+                                                  f"{counts.sum()} forces point away from there")
+            else:
+                wall.why += "; its forces point several ways"
+        if (box[0] > 0 and touching < 0.9 * all_of) or (not named and (all_of == 0 or box[0] <= 0)):
+            wall.certainty = UNCLEAR
+            wall.why += (f"; {touching} of its {all_of} contacts are of grains that are at that wall: is it a grain that is not in the "
+                         "grains' table?")
+        elif not named and name in for_grains and for_partners:
+            wall.certainty = UNCLEAR
+            wall.why += "; but it stands for a grain, and walls stand for partners"
+
+
 def _guess_offset(table: ImportTable, grains: GrainFrames) -> None:
     """The offset of the numbers with which nearly all pairs touch."""
     most, best = -1.0, 0
     for offset in (0, 1, -1, -2, -3, -4, -5, -6):  # Yade may number its walls before its grains
         trial = table.changed(id_offset=guess(str(offset), "stated", ""))
-        others = unknown_partners(trial, grains, offset, MAX_ROWS)
+        others = _unknown_partners(trial, grains, offset, MAX_ROWS)
         if len(others) > 12:  # there are only few walls
             continue
-        set_walls(trial.map, others, grains)
+        _set_walls(trial.map, others, grains)
         share = _Places(trial, grains).touching()
         if share > most + 0.05:
             most, best = share, offset
@@ -85,7 +161,7 @@ def _guess_offset(table: ImportTable, grains: GrainFrames) -> None:
     unclear = f"{told}: numbers of grains, frames or columns may be others"
     certainty, why = ("sure", told) if most > 0.9 else (UNCLEAR, unclear) if most > 0 else ("likely", "no pairs to tell it by")
     table.map["id_offset"] = guess(str(best), certainty, why)
-    set_walls(table.map, unknown_partners(table, grains, best), grains)
+    _set_walls(table.map, _unknown_partners(table, grains, best), grains)
     if len(table.map.walls) > 6:
         table.map["partner"] = guess(table.map.word("partner"), UNCLEAR, "more than six of its numbers are no grains")
 
@@ -157,7 +233,7 @@ def guess_contact_meaning(table: ImportTable, grains: GrainFrames, known: Known)
     _guess_offset(table, grains)
     _guess_force_on(table, _Places(table, grains), grains, known.box)
     places = _Places(table, grains)
-    guess_walls(table, places.all, grains, known)
+    _guess_walls(table, places.all, grains, known)
     _guess_sides(table.map, places.all)
     _guess_point_unit(table.map, places, grains, known)
     _guess_force_unit(table, places, grains, known)

@@ -1,5 +1,6 @@
 """Meaning of column names: a quantity and possibly a unit, in the terms of laboratories and programs."""
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import pint
@@ -27,9 +28,12 @@ DOWNWARDS = "depth tiefe profondeur zdown zdownwards"  # names of a downward z
 COUNTED = {"time": "time t zeit temps", "step": "step timestep schritt iter", "scan": "frame scan image snapshot bild state"}
 _FRAME = ("frame", " ".join(COUNTED.values()))
 
-# Names of a coordinate, @, of centres; also centroid0 to 2 for z, y, x, the axes of an image.
-_CENTRES = ("@ @c c@ pos@ @pos centroid@ @centroid center@ @center centre@ @centre coord@ @coord com@ @com @u p@ position@ barycenter@ "
-            "centerofmass@")
+
+
+def _of_axes(key: str, names: str, more: Sequence[str]) -> list[tuple[str, str]]:
+    """The key and its names for x, y and z, which stand in place of @; `more`: names of each."""
+    return [(key.replace("@", axis), f"{names.replace('@', axis)} {others}") for axis, others in zip("xyz", more, strict=True)]
+
 
 # Keys of the mapping and their names without units and punctuation; the first match is used.
 WORDS = {
@@ -49,8 +53,8 @@ WORDS = {
     "grains": [
         _FRAME,
         ("grain", "grain id particle label index korn teilchen nr no number atom particleid grainid bead beadid"),
-        *((axis, " ".join(word.replace("@", axis) for word in _CENTRES.split()) + f" centroid{2 - n}" + f" {DOWNWARDS}" * (axis == "z"))
-          for n, axis in enumerate("xyz")),
+        *_of_axes("@", "@ @c c@ pos@ @pos centroid@ @centroid center@ @center centre@ @centre coord@ @coord com@ @com @u p@ position@ "
+                       "barycenter@ centerofmass@", ("centroid2", "centroid1", f"centroid0 {DOWNWARDS}")),  # axes of an image: z, y, x
         ("diameter", "diameter d dia diam durchmesser diametre equivalentdiameterarea equivalentdiameter eqdiameter equivdiam "
                      "equivalentsphericaldiameter"),
         ("radius", "radius r rad radii halbmesser rayon equivalentradius equivalentradii equivradius equivradii eqradius"),
@@ -62,12 +66,8 @@ WORDS = {
                   "labeli"),
         ("partner", "partner id2 j grain2 particle2 particlej p2 b grainb idj korn2 teilchen2 atom2 patom2 idb part2 g2 i2 "
                     "neighbour neighbor nachbar other contactwith label2 lab2 labelj"),
-        ("x", "x xc cx px contactx xcontact cpx pointx xpos"),
-        ("y", "y yc cy py contacty ycontact cpy pointy ypos"),
-        ("z", "z zc cz pz contactz zcontact cpz pointz zpos " + DOWNWARDS),
-        ("fx", "fx forcex xforce f1 kraftx ffx fcx"),
-        ("fy", "fy forcey yforce f2 krafty ffy fcy"),
-        ("fz", "fz forcez zforce f3 kraftz ffz fcz"),
+        *_of_axes("@", "@ @c c@ p@ contact@ @contact cp@ point@ @pos", ("", "", DOWNWARDS)),
+        *_of_axes("f@", "f@ force@ @force kraft@ ff@ fc@", ("f1", "f2", "f3")),
         ("force", "force f forcemagnitude fn normalforce kraft fabs fmag forcenorm"),
     ],
 }
