@@ -7,9 +7,10 @@ import pathlib
 import subprocess
 import sys
 
-ROOMS = ("results", "experiment", "observe", "calibration", "diagnosis", "convergence", "report", "challenge", "commands",
+ROOMS = ("results", "experiment", "importing", "observe", "calibration", "diagnosis", "convergence", "report", "challenge", "commands",
          "checked_json.py", "command.py", "comparing.py", "diagnosing.py", "errors.py", "files.py", "json_text.py", "look.py", "manifest.py",
-         "number_text.py", "outputs.py", "parts.py", "problems.py", "program.py", "progress.py", "warn.py")
+         "number_text.py", "outputs.py", "parts.py", "problems.py", "program.py", "progress.py", "toml.py", "toml_lines.py",
+         "warn.py")
 
 
 def main():

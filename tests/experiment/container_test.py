@@ -1,14 +1,11 @@
 """Walls of containers, and distances to them and between points."""
 import math
-import pathlib
-import sys
 import unittest
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "host/python"))
-from mcdem.experiment.container import apart, floor_area, into_cell, towards_wall, wall_distance, walls_of  # noqa: E402
-from mcdem.results import Box, ContainerShape, Wall  # noqa: E402
+from mcdem.experiment.container import apart, floor_area, into_cell, towards_wall, wall_distance, walls_of
+from mcdem.results import Box, ContainerShape, Wall
 
 BOX, CYLINDER, PERIODIC = (Box(2, size_y, shape) for size_y, shape in
                            ((3, ContainerShape.box), (2, ContainerShape.cylinder), (3, ContainerShape.periodic)))

@@ -1,11 +1,9 @@
-"""`mcdem experiment import`: a run, written in the format of a laboratory and of another program, is imported as from-run converts it.
+"""`mcdem experiment import`: a run, written in the format of a laboratory, is imported as from-run converts it.
 import_test.py"""
 import gzip
 import os
 import pathlib
 import re
-import signal
-import subprocess
 import sys
 import unittest
 
@@ -16,20 +14,13 @@ from mcdem.experiment.read import read_experiment
 from mcdem.results.names import Phase
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "importing"))
-from lab import Contact, Scan, Style, Truth, dump_of_contacts, dump_of_grains, lab_contacts, lab_grains, lab_plate  # noqa: E402
+from lab import Contact, Scan, Style, Truth, lab_contacts, lab_grains, lab_plate  # noqa: E402
 
 PERFECT = ["--position-error", "0", "--diameter-error", "0", "--force-error", "0", "--force-threshold", "0"]
 IMPORT = ["experiment", "import"]
 LAB = ["contacts.csv", "plate.csv", "grains.csv"]
 BOX, MATERIALS = ["--set", "box.size=[0.06, 0.06]"], ["--set", "grains.youngs_modulus=23300", "--set", "grains.poisson_ratio=0.5"]
 KNOWN = [*LAB, *BOX, *MATERIALS, "--out"]
-# Ends a command without any chance to tidy up, when it is about to move its files to their folder.
-KILLED = """import os, signal, sys
-from mcdem.experiment import publish
-publish.publish = lambda *_: os.kill(os.getpid(), signal.SIGKILL)
-from mcdem.commands.command_line import run_command
-run_command(sys.argv[1:])
-"""
 
 
 def lab_truth(recording):
@@ -66,14 +57,14 @@ class OfARun(Import):
         for name, write in (("plate.csv", lab_plate), ("grains.csv", lab_grains), ("contacts.csv", lab_contacts)):
             self.write(name, write(self.lab, style))
 
-    def expect_truth(self, folder, contacts=True):
+    def expect_truth(self, folder):
         """Numbers were printed with nine digits."""
         read, truth = read_experiment(self.folder / folder).recording.scans, self.truth.scans
         self.assertEqual(read.phase.tolist(), truth.phase.tolist())
         np.testing.assert_allclose(read.plate_z, truth.plate_z, rtol=0, atol=1e-10)
         np.testing.assert_allclose(read.top_force, truth.top_force, rtol=0, atol=1e-8)
         np.testing.assert_allclose(read.position, truth.position, rtol=0, atol=1e-9)
-        for found, wanted in zip(read.contacts, truth.contacts, strict=True) if contacts else ():
+        for found, wanted in zip(read.contacts, truth.contacts, strict=True):
             self.assertEqual(found.partner.tolist(), wanted.partner.tolist())
             np.testing.assert_allclose(found.force, wanted.force, rtol=0, atol=1e-8)
             np.testing.assert_allclose(found.point, wanted.point, rtol=0, atol=1e-9)
@@ -126,38 +117,12 @@ class OfARun(Import):
         self.expect_truth("lab")
         self.assertEqual(self.text("lab/mapping.toml"), mapping)
 
-    def test_dumps_of_another_program_are_imported(self):
-        rows = (f"{100 * scan.frame} {scan.plate_z!r} {scan.top_force!r}\n" for scan in self.lab.scans)
-        self.write("plate.txt", "step plate_z top_force\n" + "".join(rows))
-        self.write("grains.dump", dump_of_grains(self.lab))
-        self.write("pairs.dump", dump_of_contacts(self.lab, False))
-        self.imported("plate.txt", "grains.dump", "pairs.dump", *BOX, *MATERIALS, "--out", "dumped")
-        self.expect_truth("dumped", contacts=False)
-        self.done("experiment", "check", "dumped")
-
-    def test_replaces_only_its_own_files(self):
+    def test_the_name_is_that_of_the_folder_if_none_is_stated(self):
         self.write_lab()
-        (self.folder / "lab.importing/kept").mkdir(parents=True)
-        (self.folder / "old").mkdir()
-        self.write("old/contacts.csv.gz", "others")
-        self.refused([*IMPORT, *KNOWN, "old"], "--out: old already contains contacts.csv.gz")
-        self.refused([*IMPORT, *KNOWN, "plate.csv/x"], "must be a folder, got a file in its path, plate.csv")
         self.imported(*KNOWN, "lab/", "--set", 'name="Probe 7"')
-        self.assertEqual(read_experiment(self.folder / "lab").name, "Probe 7")
         self.imported(*KNOWN, "second/")
-        self.assertEqual(read_experiment(self.folder / "second").name, "second")
-        self.assertEqual(set(os.listdir()), {"a", "seen", "small.toml", *LAB, "lab", "lab.importing", "old", "second"})
-
-    def test_what_a_killed_import_has_left_is_removed_by_the_next_one(self):
-        self.write_lab()
-        words = [*IMPORT, *KNOWN, "lab"]
-        killed = subprocess.run([sys.executable, "-B", "-c", KILLED, *words], capture_output=True, text=True)
-        self.assertEqual(killed.returncode, -signal.SIGKILL, killed.stderr)
-        there = {"a", "seen", "small.toml", *LAB}
-        left = set(os.listdir()) - there
-        self.assertEqual([re.sub("[0-9a-f]{16}", "", name) for name in left], ["lab..tmp"])
-        self.done(*words)
-        self.assertEqual(set(os.listdir()), there | {"lab"})
+        self.assertEqual([read_experiment(self.folder / name).name for name in ("lab", "second")], ["Probe 7", "second"])
+        self.assertEqual(set(os.listdir()), {"a", "seen", "small.toml", *LAB, "lab", "second"})
 
 
 class OfAProgramme(Import):
@@ -174,12 +139,15 @@ class OfAProgramme(Import):
 class WrongOptions(Import):
     def test_are_bad_input(self):
         self.write("odd.csv", "a,b\n1,2\n1,2,3\n")
+        (self.folder / "old").mkdir()
+        self.write("old/contacts.csv.gz", "others")
         for words, *parts in ((["--out", "e"], "TABLE: must be at least one file, or --mapping must name them"),
                               (["none", "odd.csv", "--out", "e"], "none: must be a table, got no such file",
                                "odd.csv:3: must have 2 columns as the first row, got 3"),
                               (["--mapping", "none", "--out", "e"], "none: must be a mapping of at most 1 MB, got no such file"),
                               (["odd.csv", "--metadata", "none", "--out", "e"], "none: must be a text of at most 1 MB, got no such file"),
-                              (["odd.csv", "--out", "small.toml"], "--out: small.toml must be a folder, got a file")):
+                              (["odd.csv", "--out", "small.toml"], "--out: small.toml must be a folder, got a file"),
+                              (["odd.csv", "--out", "old"], "--out: old already contains contacts.csv.gz")):
             with self.subTest(words):
                 self.refused([*IMPORT, *words], *parts)
                 self.assertFalse((self.folder / "e").exists())

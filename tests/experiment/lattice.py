@@ -1,16 +1,13 @@
 """A lattice of spheres in equilibrium, as an instrument measures it."""
 import copy
 import functools
-import pathlib
-import sys
 from dataclasses import fields, replace
 
 import numpy as np
+from recordings import recording_of
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "host/python"))
-from mcdem.experiment.experiment import MATERIALS, Experiment, Measurement  # noqa: E402
-from mcdem.results import Box, Contacts, Recording, Scans, Wall  # noqa: E402
-from mcdem.results.run_file import KINDS, ROW_SHAPES, SCAN_FIELDS  # noqa: E402
+from mcdem.experiment.experiment import MATERIALS, Experiment, Measurement
+from mcdem.results import Box, Contacts, Scans, Wall
 
 SIDE = 5
 NUMBER = np.arange(SIDE**3).reshape(SIDE, SIDE, SIDE)  # of a grain, by layer, row and place
@@ -47,21 +44,12 @@ def joined(parts):
     return Contacts(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Contacts)))
 
 
-def scans(plate_z, positions, contacts, top_force):
-    """At rest, first of loading and then of unloading."""
-    count = len(plate_z)
-    values = {name: np.full((count, *ROW_SHAPES.get(name, ())), np.nan) for name in SCAN_FIELDS if name not in KINDS}
-    values["plate_z"], values["wall_force"][:, Wall.plate, 2] = np.array(plate_z), top_force
-    phase = (np.arange(count) > np.argmin(plate_z)).astype(int)
-    return Scans(frame=np.arange(count), cycle=np.zeros(count, int), phase=phase, settled=np.ones(count, bool), **values,
-                 position=tuple(positions), rotation=(np.zeros((0, 3)),) * count, contacts=tuple(contacts))
-
-
 def truth(heights):
+    """At rest, first of loading and then of unloading."""
     contacts = [joined([chains(0, z), chains(1, z), chains(2, z, WEIGHT)]) for z in heights]
-    top_force = [SIDE**2 * force_at(z / SIDE) for z in heights]
-    return Recording("lattice", {}, Box(WIDTH, WIDTH), SIDE * 0.0194, np.full(SIDE**3, DIAMETER),
-                     scans(heights, map(centres, heights), contacts, top_force))
+    return recording_of("lattice", Box(WIDTH, WIDTH), SIDE * 0.0194, np.full(SIDE**3, DIAMETER), plate_z=heights,
+                        top_force=[SIDE**2 * force_at(z / SIDE) for z in heights], phase=np.arange(len(heights)) > np.argmin(heights),
+                        position=map(centres, heights), contacts=dict(enumerate(contacts)))
 
 
 def measured(recording, errors, random):

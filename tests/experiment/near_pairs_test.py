@@ -1,15 +1,12 @@
 """The cell list finds every pair of neighbouring grains once."""
-import pathlib
-import sys
 import unittest
 from unittest import mock
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "host/python"))
-from mcdem.experiment import near_pairs as module  # noqa: E402
-from mcdem.experiment.container import apart  # noqa: E402
-from mcdem.results import Box, ContainerShape  # noqa: E402
+from mcdem.experiment import near_pairs as module
+from mcdem.experiment.container import apart
+from mcdem.results import Box, ContainerShape
 
 SHAPES = (ContainerShape.box, ContainerShape.cylinder, ContainerShape.periodic)
 SIZES = ((1.0, 1.0, 1.0), (0.3, 1.2, 0.05), (0.15, 0.25, 3.0), (1e-3, 1.0, 1.0))

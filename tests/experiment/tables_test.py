@@ -141,16 +141,6 @@ class Files(FolderCase):
         self.texts = SMALL | {"plate.csv": SMALL["plate.csv"] + "#" * 16_000_000}
         self.assertEqual(self.problems(), [])
 
-    def test_other_separators_are_told_once(self):
-        for separator in ";\t":
-            self.texts["plate.csv"] = SMALL["plate.csv"].replace(",", separator)
-            told = "columns must be separated by commas: export the table with commas, and decimal points"
-            self.assertEqual(self.problems(), [f"plate.csv:1: {told}"])
-
-    def test_a_byte_order_mark_is_skipped(self):
-        self.texts = {name: "\ufeff" + text for name, text in SMALL.items()}
-        self.assertEqual(self.problems(), [])
-
     def test_compressed_tables(self):
         for name in TABLES:
             whole = GZIP(self.texts[name].encode())

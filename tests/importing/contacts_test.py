@@ -5,7 +5,7 @@ import unittest
 
 import numpy as np
 
-from lab import Contact, ImportCase, Style, lab_contacts
+from lab import Contact, ImportCase, Style, lab_contacts, mapped
 from mcdem.importing.guess import mapping_of
 from mcdem.importing.mapping import Guess, mapping_text
 
@@ -60,24 +60,9 @@ class Contacts(ImportCase):
                 rows.append((str(100 + scan.frame), str(i + 1), *(f"{x:.12g}" for x in (*c.point, *c.force))))
         text = Style(";", ".").table(["step", "Nr", "x", "y", "z", "fx", "fy", "fz"], rows)
         rest = mapping_text(mapping_of(self.guess(self.write_lab()[:2])))
-        self.expect_truth(self.by_mapping(rest + f"""[[table]]
-role = "contacts"
-files = ["{self.write("plate_forces.csv", text)}"]
-frame = "step"
-frames_by = "order"
-grain = "Nr"
-partner = "plate"
-where = "fz"
-x = "x"
-y = "y"
-z = "z"
-fx = "fx"
-fy = "fy"
-fz = "fz"
-force_on = "grain"
-length_unit = "m"
-force_unit = "N"
-"""))
+        self.expect_truth(self.by_mapping(rest + mapped(
+            "contacts", self.write("plate_forces.csv", text), frame="step", frames_by="order", grain="Nr", partner="plate", where="fz",
+            x="x", y="y", z="z", fx="fx", fy="fy", fz="fz", force_on="grain", length_unit="m", force_unit="N")))
 
     def test_sizes_take_their_direction_from_their_own_frame(self):
         files = self.write_lab()
@@ -85,10 +70,7 @@ force_unit = "N"
             scan.contacts = [contact for contact in scan.contacts if not contact.is_wall]
         self.write("kontakte.csv", Style(",", ".").table(["frame", "id1", "id2", "fn_N"], (
             (scan.frame, c.grain + 1, c.partner + 1, f"{np.linalg.norm(c.force):.12g}") for scan in self.truth.scans for c in scan.contacts)))
-        tables = self.guess(files)
-        self.assertEqual(self.of(tables, "contacts").word("frames_by"), "order", "0, 1, .. beside half seconds")
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
+        self.expect_import(files, contacts={"frames_by": "order"})  # 0, 1, .. beside half seconds
 
 
 if __name__ == "__main__":

@@ -3,14 +3,53 @@ import unittest
 
 from lab import ImportCase, Style, lab_contacts, lab_grains, lab_plate
 from mcdem.importing.guess import guess_tables, mapping_of, wrong_rows
-from mcdem.importing.mapping import mapping_text
+from mcdem.importing.mapping import Guess, mapping_text
 from mcdem.importing.read_mapping import parse_mapping
 
 
-class Errors(ImportCase):
-    def mapping_problems(self, text):
-        return self.problems_of(lambda: parse_mapping(text, "m"))
+GRAINS = '[[table]]\nfiles = ["a"]\nrole = "grains"\nlength_unit = "m"\nx = "-x"\n'
+LENGTH_UNIT = "length_unit must be stated: one of m, cm, mm, um, voxel"
+FORCE_UNIT = "force_unit must be stated: one of N, mN, uN, kN, cN, daN, gf, kgf, lbf"
+# A mapping, and its problems.
+MAPPINGS = (
+    ("", [" must hold at least one [[table]], got none"]),
+    ('x = 1\n[[table]]\nrole = "sand"\nseparator = "|"\n', [
+        '1: "x" must be a list of tables, [[table]], got something else',
+        '3: role must be one of "plate" "grains" "contacts" "unused", got "sand"',
+        "2: files must name at least one file, got none",
+        '4: separator must be one of "," ";" "tab" "blanks", got "|"']),
+    ('[[table]]\nrole = "grains"\nfiles = ["a"]\nx = 3\nlength_unit = "ft"\norigin_x = "left"\nfx = "f"\ndiameter = ["a", "b"]\n', [
+        '4: "x" must be a text, or a list of texts, got something else',
+        '5: length_unit must be one of "m" "cm" "mm" "um" "voxel", got "ft"',
+        '6: origin_x must be a number in quotes, got "left"',
+        '7: "fx" must be a key of a table of grains, got another: remove it, or choose from frame, frames_by, grain, first_grain, where, x, '
+        "y, z, diameter, radius, volume, same_diameter, length_unit, voxel_size, origin_x, origin_y, origin_z",
+        "8: diameter must be one text, got 2"]),
+    ('[[table]]\nrole = "contacts"\nfiles = ["a"]\n[table.walls]\n1 = "roof"\n', [
+        '5: a wall must be one of "x_min" "x_max" "y_min" "y_max" "floor" "plate" "by direction", got "roof"']),
+    ('[[table]]\nrole = "contacts"\nfiles = ["a"]\nwalls = 3\n', ["4: walls must be a table, [table.walls], got something else"]),
+    # units and signs
+    ('[[table]]\nfiles = ["a"]\nrole = "plate"\nplate_z = "h"\ntop_force = "F"\n', [
+        f"1: {LENGTH_UNIT}, got none", f"1: {FORCE_UNIT}, got none",
+        "1: force_sign must be stated: one of +, -; +: upward force on the plate is positive; -: negative, got none"]),
+    ('[[table]]\nfiles = ["a"]\nrole = "grains"\nx = "h"\n', [f"1: {LENGTH_UNIT}, got none"]),
+    ('[[table]]\nfiles = ["a"]\nrole = "grains"\nx = "h"\nlength_unit = "voxel"\n', [
+        "1: voxel_size must be stated: edge of a voxel [m], where length_unit is voxel, got none"]),
+    ('[[table]]\nfiles = ["a"]\nrole = "grains"\nx = "h"\nlength_unit = "voxel"\nvoxel_size = "0"\n', [
+        '6: voxel_size must be > 0 [m], got "0"']),
+    ('[[table]]\nfiles = ["a"]\nrole = "contacts"\nfx = "F"\n', [
+        f"1: {FORCE_UNIT}, got none", "1: force_on must be stated: one of grain, partner; on which of the two the force is, got none"]),
+    ('[[table]]\nfiles = ["a"]\nrole = "contacts"\nforce = "F"\nx = "x"\n', [
+        f"1: {LENGTH_UNIT}; of contact points, got none", f"1: {FORCE_UNIT}, got none"]),
+    # signs stand before columns of quantities only
+    (GRAINS, []),
+    (GRAINS + 'radius = "-r"\n', ['6: radius must be a column without a sign, got "-r"']),
+    (GRAINS + 'grain = "-id"\n', ['6: grain must be a column without a sign, got "-id"']),
+    (GRAINS + 'z = "-"\n', ["6: z must be a column, got a sign only"]),
+    ('[[table]]\nfiles = ["a"]\nrole = "plate"\nforce_sign = "-"\n', []))
 
+
+class Errors(ImportCase):
     def test_invalid_rows_are_reported_with_line_numbers(self):
         self.write_lab()
         mapping = mapping_text(mapping_of(self.guess([self.path(name) for name in ("kraft.csv", "koerner.csv", "kontakte.csv")])))
@@ -38,52 +77,12 @@ class Errors(ImportCase):
                          ["none: must be a table, got no such file", "neither: must be a table, got no such file"])
 
     def test_all_errors_of_a_mapping_are_reported_together(self):
-        self.assertEqual(self.mapping_problems(""), ["m: must hold at least one [[table]], got none"])
-        self.expect_one(self.mapping_problems("[[table]\n"), "m:1: must be TOML, got")
-        self.assertEqual(self.mapping_problems('x = 1\n[[table]]\nrole = "sand"\nseparator = "|"\n'),
-                         ['m:1: "x" must be a list of tables, [[table]], got something else',
-                          'm:3: role must be one of "plate" "grains" "contacts" "unused", got "sand"',
-                          "m:2: files must name at least one file, got none",
-                          'm:4: separator must be one of "," ";" "tab" "blanks", got "|"'])
-        problems = self.mapping_problems('[[table]]\nrole = "grains"\nfiles = ["a"]\nx = 3\nlength_unit = "ft"\norigin_x = "left"\n'
-                                         'fx = "f"\ndiameter = ["a", "b"]\n')
-        self.assertEqual(len(problems), 5)
-        for part in ("m:8: diameter must be one text, got 2", 'm:7: "fx" must be a key of a table of grains, got another',
-                     'm:5: length_unit must be one of "m" "cm" "mm" "um" "voxel", got "ft"', 'm:6: origin_x must be a number in quotes, got "left"',
-                     'm:4: "x" must be a text, or a list of texts'):
-            self.expect_among(problems, part)
-        self.assertEqual(self.mapping_problems('[[table]]\nrole = "contacts"\nfiles = ["a"]\n[table.walls]\n1 = "roof"\n'),
-                         ['m:5: a wall must be one of "x_min" "x_max" "y_min" "y_max" "floor" "plate" "by direction", got "roof"'])
+        for text, expected in MAPPINGS:
+            with self.subTest(text):
+                self.assertEqual(self.problems_of(lambda: parse_mapping(text, "m")), [f"m:{problem}" for problem in expected])
 
-    def test_units_and_signs_must_be_stated(self):
-        def problems(text):
-            return self.mapping_problems('[[table]]\nfiles = ["a"]\n' + text)
-
-        self.assertEqual(problems('role = "plate"\nplate_z = "h"\ntop_force = "F"\n'),
-                         ["m:1: length_unit must be stated: one of m, cm, mm, um, voxel, got none",
-                          "m:1: force_unit must be stated: one of N, mN, uN, kN, cN, daN, gf, kgf, lbf, got none",
-                          "m:1: force_sign must be stated: one of +, -; +: upward force on the plate is positive; -: negative, got none"])
-        self.expect_one(problems('role = "grains"\nx = "h"\n'), "length_unit must")
-        self.expect_one(problems('role = "grains"\nx = "h"\nlength_unit = "voxel"\n'), "voxel_size must be stated: edge of a voxel [m]")
-        self.expect_one(problems('role = "grains"\nx = "h"\nlength_unit = "voxel"\nvoxel_size = "0"\n'), "voxel_size must be > 0 [m]")
-        missing = problems('role = "contacts"\nfx = "F"\n')
-        self.assertEqual(len(missing), 2)
-        self.expect_among(missing, "force_unit must")
-        self.expect_among(missing, "force_on must be stated: one of grain, partner; on which")
-        missing = problems('role = "contacts"\nforce = "F"\nx = "x"\n')
-        self.assertEqual(len(missing), 2)
-        self.expect_among(missing, "length_unit must")
-
-    def test_signs_stand_before_columns_of_quantities_only(self):
-        def problems(text):
-            return self.mapping_problems('[[table]]\nfiles = ["a"]\n' + text)
-
-        grains = 'role = "grains"\nlength_unit = "m"\nx = "-x"\n'
-        self.assertEqual(problems(grains), [])
-        self.assertEqual(problems(grains + 'radius = "-r"\n'), ['m:6: radius must be a column without a sign, got "-r"'])
-        self.assertEqual(len(problems(grains + 'grain = "-id"\n')), 1)
-        self.assertEqual(problems(grains + 'z = "-"\n'), ["m:6: z must be a column, got a sign only"])
-        self.assertEqual(problems('role = "plate"\nforce_sign = "-"\n'), [])
+    def test_a_mapping_that_is_no_toml_has_its_line(self):
+        self.expect_one(self.problems_of(lambda: parse_mapping("[[table]\n", "m")), "m:1: must be TOML, got: Expected")
 
     def test_what_wrong_rows_hide_is_unclear(self):
         style = Style(";", ".", False)
@@ -96,6 +95,15 @@ class Errors(ImportCase):
         for key in ("id_offset", "force_on", "length_unit", "force_unit"):
             self.assertEqual(contacts[key].certainty, "unclear", key)
         self.expect_among(wrong_rows(tables), 'must be a finite number, got "NaN"')
+
+    def test_a_table_of_grains_must_have_one(self):
+        tables = self.guess(self.write_lab())
+        self.of(tables, "grains")["where"] = Guess(["Guete"])
+        text = mapping_text(mapping_of(tables))
+        header, *rows = lab_grains(self.truth).splitlines()
+        self.write("koerner.csv", "\n".join([header + ";Guete", *(row + ";0" for row in rows), ""]))
+        self.expect_one(self.problems_of(lambda: self.imported(self.by_mapping(text))),
+                        "koerner.csv: must have grains, got 0 in all rows of the column for where")
 
     def test_missing_tables_are_reported(self):
         self.expect_one(self.problems_of(lambda: self.imported(self.guess(self.write_lab()[1:2]))),
@@ -111,11 +119,6 @@ class Errors(ImportCase):
         self.write("kontakte.csv", contacts)
         self.write("koerner.csv", "".join(line for line in lab_grains(self.truth).splitlines(keepends=True) if ";17;" not in line))
         self.expect_among(self.unclear(self.guess(files)), '"17" must be confirmed, got "?by direction"')
-
-    def test_units_that_are_not_known_must_be_confirmed(self):
-        files = self.write_lab()
-        self.write("kraft.csv", lab_plate(self.truth).replace("[mN]", "[MPa]"))
-        self.expect_among(self.unclear(self.guess(files)), "a name says [MPa], which is a pressure and no force: multiply by the area")
 
     def test_what_is_not_a_number_in_the_plates_table_is_named_by_its_line(self):
         files = self.write_lab()

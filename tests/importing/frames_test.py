@@ -48,9 +48,8 @@ class Frames(ImportCase):
 
     def test_numbers_in_file_names_are_those_of_the_plate(self):
         files = [self.plate("frame")] + self.grain_files([(2, "grains_002.txt"), (3, "grains_003.txt"), (5, "grains_005.txt")])
-        tables = self.guess(files)
+        tables = self.guess_surely(files)
         self.assertEqual(self.of(tables, "grains")["frames_by"].certainty, "likely")
-        self.assertEqual(self.unclear(tables), [])
         imported = self.imported(tables)
         self.assertEqual(len(imported.plate), 5, "two rows before the first grains are left out")
         for f in (2, 3, 5):
@@ -78,10 +77,8 @@ class Frames(ImportCase):
         files = self.grain_files([(0, "tomo_000.csv"), (2, "tomo_012.csv"), (4, "tomo_024.csv")])
         for frame in ("", "time [s]"):
             plate = self.plate(frame, 0, 0.7, [Row(*row) for row in zip(heights, forces)])
-            tables = self.guess([plate] + files)
-            self.assertEqual(self.of(tables, "grains").word("frames_by"), "rows" if frame else "plate")
+            tables = self.guess_surely([plate] + files, grains={"frames_by": "rows" if frame else "plate"})
             self.assertEqual(self.of(tables, "grains")["frames_by"].certainty, "likely")
-            self.assertEqual(self.unclear(tables), [])
             imported = self.imported(tables)
             self.assertEqual([*imported.grains.frame.unique()], [0, 12, 24])
             np.testing.assert_allclose(self.position(imported, 24), self.truth.scans[4].position, atol=1e-9)
@@ -92,10 +89,7 @@ class Frames(ImportCase):
         for first in (0, 1):
             files = [self.plate("frame", 1), self.contacts("frame", 1, 1)]
             files += self.grain_files([(f, f"grains_{f + first:03}.txt") for f in range(7)])
-            tables = self.guess(files)
-            self.assertEqual(self.unclear(tables), [])
-            self.assertEqual(self.of(tables, "contacts").word("frames_by"), "plate")
-            imported = self.imported(tables)
+            imported = self.imported(self.guess_surely(files, contacts={"frames_by": "plate"}))
             for scan in self.truth.scans[1:]:
                 self.expect_contacts(imported, scan)
 
@@ -110,8 +104,7 @@ class Frames(ImportCase):
         self.expect_one(self.unclear(self.guess(files)), "frames_by must be confirmed")
 
     def test_times_in_other_units_are_converted(self):
-        tables = self.guess([self.plate("time [s]", 0, 60), self.grains("time [min]", 1, (0, 1, 3))])
-        self.assertEqual(self.unclear(tables), [])
+        tables = self.guess_surely([self.plate("time [s]", 0, 60), self.grains("time [min]", 1, (0, 1, 3))])
         np.testing.assert_allclose(self.position(self.imported(tables), 3), self.truth.scans[3].position, atol=1e-9)
 
     def test_frame_numbers_start_at_0_or_must_be_confirmed_if_the_plate_has_none(self):

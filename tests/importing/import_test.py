@@ -1,39 +1,32 @@
 """Experiments from foreign tables: the guess, what it marks as uncertain, and the imported values."""
+import copy
 import re
 import unittest
+from dataclasses import replace
 
 import numpy as np
 
-from lab import (Contact, ImportCase, Style, dump_of_contacts, dump_of_grains, lab_contacts, lab_grains, lab_plate,
+from lab import (Contact, ImportCase, Style, dump_of_contacts, dump_of_grains, lab_contacts, lab_grains, lab_plate, mapped,
                  plain_plate)
-from mcdem.importing.assemble import Known, import_tables
+from mcdem.importing.assemble import import_tables
 from mcdem.importing.guess import guess_tables, mapping_of
-from mcdem.importing.mapping import mapping_text
+from mcdem.importing.mapping import Known, mapping_text
 from mcdem.importing.read_mapping import parse_mapping
 from mcdem.importing.text import Form
 
 
 class Import(ImportCase):
     def test_german_names_with_units_need_no_confirmation(self):
-        tables = self.guess(self.write_lab())
-        self.assertEqual(self.unclear(tables), [])
-        self.assertEqual(self.of(tables, "grains").word("length_unit"), "mm")
+        tables = self.expect_import(self.write_lab(), grains={"length_unit": "mm"})
         self.assertEqual(self.of(tables, "grains").form, Form(";", ","))
         self.assertEqual(self.of(tables, "contacts").walls["Boden"].word, "floor")
         self.assertEqual(self.of(tables, "contacts").walls["Boden"].why, "its name")
-        self.expect_truth(tables)
 
     def test_missing_units_are_derived_from_box_and_stiffness(self):
-        tables = self.guess(self.write_lab(Style("\t", ".", False)))
-        self.assertEqual(self.unclear(tables), [])
-        for role in ("plate", "grains", "contacts"):
-            self.assertEqual(self.of(tables, role).word("length_unit"), "mm")
-        self.assertEqual(self.of(tables, "plate").word("force_unit"), "mN")
-        self.assertEqual(self.of(tables, "contacts").word("force_unit"), "mN")
-        self.expect_truth(tables)
+        units = {"length_unit": "mm", "force_unit": "mN"}
+        self.expect_import(self.write_lab(Style("\t", ".", False)), plate=units, grains={"length_unit": "mm"}, contacts=units)
         metres = self.guess(self.write_lab(Style(",", ".", False, 1, 1 / 9.80665e-3)))
-        self.assertEqual(self.of(metres, "grains").word("length_unit"), "m")
-        self.assertEqual(self.of(metres, "plate").word("force_unit"), "gf")
+        self.assertEqual((self.of(metres, "grains").word("length_unit"), self.of(metres, "plate").word("force_unit")), ("m", "gf"))
 
     def test_without_scale_units_must_be_confirmed(self):
         tables = guess_tables(self.write_lab(Style(named=False)), Known())
@@ -56,123 +49,63 @@ class Import(ImportCase):
         self.expect_among(self.unclear(self.guess(files)), "is it the radius?")
 
     def test_dump_columns_without_clear_names_are_identified_by_values(self):
-        tables = self.guess([self.write("pairs.dump", dump_of_contacts(self.truth, False)),
-                             self.write("grains.dump", dump_of_grains(self.truth)), self.write("plate.csv", plain_plate(self.truth))])
-        self.assertEqual(self.unclear(tables), [])
-        contacts = self.of(tables, "contacts")
-        self.assertEqual([contacts.word(key) for key in ("grain", "partner", "fx")], ["c_p[1]", "c_p[2]", "c_p[4]"])
+        files = [self.write("pairs.dump", dump_of_contacts(self.truth, False)), self.write("grains.dump", dump_of_grains(self.truth)),
+                 self.write("plate.csv", plain_plate(self.truth))]
         for scan in self.truth.scans:
             scan.contacts = [contact for contact in scan.contacts if not contact.is_wall]
-        self.expect_truth(tables)
+        self.expect_import(files, contacts={"grain": "c_p[1]", "partner": "c_p[2]", "fx": "c_p[4]"})
 
     def test_walls_of_a_program_are_named_in_the_mapping(self):
-        for name, text in (("plate.csv", plain_plate(self.truth)), ("grains.dump", dump_of_grains(self.truth)),
-                           ("pairs.dump", dump_of_contacts(self.truth, False)), ("walls.dump", dump_of_contacts(self.truth, True))):
-            self.write(name, text)
-        contacts = 'force_unit = "N"\nforce_on = "grain"\nfx = "c_p[4]"\nfz = "c_p[6]"\n'
-        self.expect_truth(self.by_mapping(f"""[[table]]
-role = "plate"
-files = ["{self.folder}/plate.csv"]
-frame = "step"
-plate_z = "plate_z_m"
-top_force = "force_N"
-length_unit = "m"
-force_unit = "N"
-force_sign = "+"
-[[table]]
-role = "grains"
-files = ["{self.folder}/grains.dump"]
-grain = "id"
-x = "x"
-y = "y"
-z = "z"
-radius = "radius"
-length_unit = "m"
-[[table]]
-role = "contacts"
-files = ["{self.folder}/pairs.dump"]
-grain = "c_p[1]"
-partner = "c_p[2]"
-fy = ["c_p[5]", "c_p[3]"]
-{contacts}
-[[table]]
-role = "contacts"
-files = ["{self.folder}/walls.dump"]
-grain = "c_p[3]"
-partner = "c_p[1]"
-fy = "c_p[5]"
-{contacts}
-[table.walls]
-0 = "x_min"
-1 = "by direction"
-2 = "y_min"
-3 = "y_max"
-4 = "floor"
-5 = "plate"
-"""))
+        plate, grains, pairs, walls = (self.write(name, text) for name, text in (
+            ("plate.csv", plain_plate(self.truth)), ("grains.dump", dump_of_grains(self.truth)),
+            ("pairs.dump", dump_of_contacts(self.truth, False)), ("walls.dump", dump_of_contacts(self.truth, True))))
+        forces = {"force_unit": "N", "force_on": "grain", "fx": "c_p[4]", "fz": "c_p[6]"}
+        self.expect_truth(self.by_mapping(
+            mapped("plate", plate, frame="step", plate_z="plate_z_m", top_force="force_N", length_unit="m", force_unit="N", force_sign="+")
+            + mapped("grains", grains, grain="id", x="x", y="y", z="z", radius="radius", length_unit="m")
+            + mapped("contacts", pairs, grain="c_p[1]", partner="c_p[2]", fy=["c_p[5]", "c_p[3]"], **forces)
+            + mapped("contacts", walls, {0: "x_min", 1: "by direction", 2: "y_min", 3: "y_max", 4: "floor", 5: "plate"},
+                     grain="c_p[3]", partner="c_p[1]", fy="c_p[5]", **forces)))
 
     def test_the_grain_a_force_acts_on_and_pairs_listed_twice_are_detected(self):
-        files = self.write_lab()
-        for scan in self.truth.scans:
-            for contact in scan.contacts:
-                contact.force = -contact.force
-        self.write("kontakte.csv", lab_contacts(self.truth))
-        for scan in self.truth.scans:
-            for contact in scan.contacts:
-                contact.force = -contact.force
-        tables = self.guess(files)
-        self.assertEqual(self.of(tables, "contacts").word("force_on"), "partner")
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
-        once = [list(scan.contacts) for scan in self.truth.scans]
-        for scan in self.truth.scans:
-            scan.contacts += [Contact(c.partner, c.grain, c.point, -c.force) for c in scan.contacts if not c.is_wall]
-        self.write("kontakte.csv", lab_contacts(self.truth))
-        for scan, contacts in zip(self.truth.scans, once):
-            scan.contacts = contacts
-        tables = self.guess(files)
-        self.assertEqual(self.of(tables, "contacts").word("sides"), "both")
-        self.expect_truth(tables)
+        files, listed = self.write_lab(), copy.deepcopy(self.truth)
+        for scan in listed.scans:
+            scan.contacts = [replace(contact, force=-contact.force) for contact in scan.contacts]
+        self.write("kontakte.csv", lab_contacts(listed))
+        self.expect_import(files, contacts={"force_on": "partner"})
+        for scan, truth in zip(listed.scans, self.truth.scans):
+            scan.contacts = truth.contacts + [Contact(c.partner, c.grain, c.point, -c.force) for c in truth.contacts if not c.is_wall]
+        self.write("kontakte.csv", lab_contacts(listed))
+        self.expect_import(files, contacts={"sides": "both"})
 
     def test_numbers_from_zero_beside_numbers_from_one_are_seen(self):
         files = self.write_lab()
         pairs = [(scan, c) for scan in self.truth.scans for c in scan.contacts if not c.is_wall]
         self.write("kontakte.csv", Style(",", ".").table(["Zeit [s]", "id1", "id2", "fx_mN", "fy_mN", "fz_mN"], (
             (0.5 * scan.frame, c.grain, c.partner, *(1e3 * c.force)) for scan, c in pairs)))
-        tables = self.guess(files)
-        self.assertEqual(self.of(tables, "contacts").word("id_offset"), "1")
-        self.assertEqual(self.unclear(tables), [])
-        contacts = self.imported(tables).contacts
+        contacts = self.imported(self.guess_surely(files, contacts={"id_offset": "1"})).contacts
         self.assertEqual([*contacts.grain], [c.grain for _, c in pairs])
 
     def test_grains_without_column_names_are_identified_by_touching_neighbours(self):
         rows = np.column_stack([self.truth.scans[0].position, self.truth.diameter / 2])
-        tables = self.guess([self.write("pack.txt", "".join("\t".join(f"{x:.6g}" for x in row) + "\n" for row in rows))])
-        self.assertEqual(tables[0].role, "grains")
-        self.assertEqual(tables[0].map.word("radius"), "column 4")
-        self.assertEqual(tables[0].map.word("length_unit"), "m")
-        self.assertEqual(self.unclear(tables), [])
+        self.guess_surely([self.write("pack.txt", "".join("\t".join(f"{x:.6g}" for x in row) + "\n" for row in rows))],
+                          grains={"radius": "column 4", "length_unit": "m"})
 
     def test_files_that_are_alike_are_frames_in_the_order_of_their_numbers(self):
         files = [self.write_lab()[0]]
         for scan in reversed(self.truth.scans):
             files.append(self.write(f"grains{scan.frame + 5}.csv", Style(";", ".").table(
                 ["id", "x_m", "y_m", "z_m", "diameter_m"], ((i, *at, self.truth.diameter[i]) for i, at in enumerate(scan.position)))))
-        tables = self.guess(files)
-        self.assertEqual(len(tables), 2)
-        self.assertEqual(self.of(tables, "grains").word("frames_by"), "order")
         for scan in self.truth.scans:
             scan.contacts = []
-        self.expect_truth(tables)
+        self.assertEqual(len(self.expect_import(files, grains={"frames_by": "order"})), 2)
 
     def test_displacements_cycles_and_early_rows_of_the_plate(self):
         plate = "t,displacement_mm,force_N\n-1,-0.1,0\n" + "".join(
             f"{0.5 * scan.frame},{1e3 * (0.0605 - scan.plate_z)},{-scan.top_force}\n" for scan in self.truth.scans) + "3.5,4,-1\n4,0.1,0\n"
         files = [self.write("plate.csv", plate), self.write("grains.csv", lab_grains(self.truth, Style(",", ".")).replace("Zeit [s]", "t [s]"))]
         self.known.plate_start = 0.0605
-        tables = self.guess(files)
-        self.assertEqual(self.unclear(tables), [])
-        self.assertEqual(self.of(tables, "plate").word("force_sign"), "-")
+        tables = self.guess_surely(files, plate={"force_sign": "-"})
         imported = self.imported(tables)
         self.assertEqual(imported.notes, ["the plate's first 1 rows are left out: grains are known from then on"])
         self.assertEqual(imported.plate_start, 0.0605)

@@ -16,10 +16,11 @@ if MISSING:
 import numpy as np
 
 from mcdem.errors import InputError
-from mcdem.importing.assemble import Known, import_tables
+from mcdem.importing.assemble import import_tables
 from mcdem.importing.guess import guess_tables, mapping_of, read_import_tables
-from mcdem.importing.mapping import WALLS, mapping_text, unclear_entries
+from mcdem.importing.mapping import WALLS, Known, mapping_text, unclear_entries
 from mcdem.importing.read_mapping import parse_mapping
+from mcdem.toml import toml_value
 
 BOX = (0.06, 0.08)
 GERMAN_WALLS = ["links", "rechts", "vorn", "hinten", "Boden", "Deckel"]
@@ -164,6 +165,12 @@ def plain_plate(truth, separator=",", frames="step", step=100):
     return "".join(separator.join(map(str, row)) + "\n" for row in itertools.chain([names], rows))
 
 
+def mapped(role, file, walls=(), **entries):
+    """A table of a mapping."""
+    lines = [f"{key} = {toml_value(word)}" for key, word in {"role": role, "files": [file], **entries}.items()]
+    return "\n".join(["[[table]]", *lines, "[table.walls]" * bool(walls), *(f'{name} = "{wall}"' for name, wall in dict(walls).items()), ""])
+
+
 class ImportCase(unittest.TestCase):
     def setUp(self):
         kept = tempfile.TemporaryDirectory(prefix="mcdem-test-")
@@ -215,9 +222,32 @@ class ImportCase(unittest.TestCase):
     def expect_among(self, lines, *parts):
         self.assertTrue(any(all(part in line for part in parts) for line in lines), (parts, lines))
 
+    def guess_surely(self, files, **words):
+        """The guess for these files, of which nothing must be confirmed. `words`: for a role, keys with the words of the mapping."""
+        tables = self.guess(files)
+        self.assertEqual(self.unclear(tables), [])
+        for role, entries in words.items():
+            found = {key: entry.word for key, entry in self.of(tables, role).entries.items()}
+            self.assertEqual({key: found.get(key) for key in entries}, entries)
+        return tables
+
+    def expect_import(self, files, **words):
+        """Of the truth, by a guess of which nothing must be confirmed."""
+        tables = self.guess_surely(files, **words)
+        self.expect_truth(tables)
+        return tables
+
     def expect_truth(self, tables):
         """Numbers were printed with nine digits."""
         self.expect_tables(import_tables(tables, self.known))
+
+    def accepted(self, tables, *replaced):
+        """The mapping with all entries confirmed, and texts of it replaced."""
+        text = mapping_text(mapping_of(tables)).replace('"?', '"')
+        for old, new in replaced:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        return text
 
     def expect_tables(self, imported, contacts=True):
         plate, grains = imported.plate, imported.grains

@@ -2,8 +2,6 @@
 import unittest
 
 from lab import ImportCase, Style, lab_grains
-from mcdem.importing.guess import mapping_of
-from mcdem.importing.mapping import mapping_text
 
 
 def rows_of(truth, form):
@@ -16,14 +14,15 @@ class Machines(ImportCase):
         for scan in self.truth.scans:
             scan.contacts = []
 
+    def files_with(self, text, grains=None):
+        """A table of the plate, and one of the grains."""
+        return [self.write("machine.csv", text), self.write("grains.csv", grains or lab_grains(self.truth, Style(",", ".")))]
+
     def with_plate(self, text, grains=None):
-        """The guess for this table of the plate."""
-        return self.guess([self.write("machine.csv", text), self.write("grains.csv", grains or lab_grains(self.truth, Style(",", ".")))])
+        return self.guess(self.files_with(text, grains))
 
     def expect_all_of(self, text, grains=None):
-        tables = self.with_plate(text, grains)
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
+        self.expect_import(self.files_with(text, grains))
 
     def test_units_of_other_columns_may_be_any(self):
         for other in ("(kPa)", "[furlong]", "°C", "μm", "[-]"):
@@ -42,15 +41,14 @@ class Machines(ImportCase):
         cells = [row.split(",") for row in grains]
         frames = [",".join([*row[:time], f"{2 * float(row[time]):.0f}", *row[time + 1:]]) for row in cells]
         grains = "\n".join([name.replace("Zeit [s]", "frame"), *frames, ""])
-        text = mapping_text(mapping_of(self.with_plate("Zeit [s],Height [mm],Load [N],frame\n" + rows, grains)))
-        self.expect_truth(self.by_mapping(text.replace('frame = "Zeit [s]"', 'frame = "frame"').replace('"?', '"')))
+        tables = self.with_plate("Zeit [s],Height [mm],Load [N],frame\n" + rows, grains)
+        self.expect_truth(self.by_mapping(self.accepted(tables, ('frame = "Zeit [s]"', 'frame = "frame"'))))
 
     def test_frames_between_rows_take_the_nearest_if_the_clock_is_confirmed(self):
         rows = "".join(f"{0.5 * s.frame + late - 0.02},{1e3 * s.plate_z:.9g},{s.top_force:.9g}\n" for s in self.truth.scans for late in (0, 0.1, 0.2, 0.3))
         tables = self.with_plate("Zeit [s],Height [mm],Load [N]\n" + rows)
         self.expect_one(self.unclear(tables), 'frames_by must be confirmed, got "?nearest"')
-        text = mapping_text(mapping_of(tables)).replace("?nearest", "nearest")
-        imported = self.imported(self.by_mapping(text))
+        imported = self.imported(self.by_mapping(self.accepted(tables)))
         self.assertEqual([*imported.grains.frame.unique()], [4 * scan.frame for scan in self.truth.scans])
         of_frames = imported.plate.iloc[::4]
         self.assertEqual([*of_frames.plate_z_m.round(9)], [scan.plate_z for scan in self.truth.scans])

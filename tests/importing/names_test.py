@@ -4,9 +4,7 @@ import unittest
 import numpy as np
 
 from lab import ImportCase, Style
-from mcdem.importing.assemble import Known
-from mcdem.importing.guess import mapping_of
-from mcdem.importing.mapping import mapping_text
+from mcdem.importing.mapping import Known
 from mcdem.importing.names import column_name
 
 VOXEL = 1.25e-4  # [m]
@@ -68,7 +66,7 @@ class Quantities(ImportCase):
             with self.subTest(name):
                 tables = self.plate(name)
                 self.expect_among(self.unclear(tables), "force_unit must be confirmed", "and no force: multiply by the")
-                text = mapping_text(mapping_of(tables)).replace('"?', '"')
+                text = self.accepted(tables)
                 self.expect_one(self.problems_of(lambda: self.imported(self.by_mapping(text))), f'"{name}" must be a force, got another quantity')
 
     def test_named_as_pressures_have_a_remedy_and_no_force_is_guessed(self):
@@ -76,9 +74,9 @@ class Quantities(ImportCase):
             with self.subTest(name):
                 tables = self.plate(name)
                 self.assertNotIn("top_force", self.of(tables, "plate"))
-                self.expect_among(self.unclear(tables), 'role must be confirmed, got "?plate"', "multiply by the area that it acts on")
-                text = mapping_text(mapping_of(tables)).replace('"?', '"').replace("# top_force =", f'top_force = "{name}"  #')
-                text += 'force_unit = "N"\nforce_sign = "+"\n'
+                self.expect_among(self.unclear(tables), 'role must be confirmed, got "?plate": no column is named as top_force, which a plate',
+                                  "multiply by the area that it acts on")
+                text = self.accepted(tables, ("# top_force =", f'top_force = "{name}"  #')) + 'force_unit = "N"\nforce_sign = "+"\n'
                 self.expect_among(self.problems_of(lambda: self.imported(self.by_mapping(text))), f'"{name}" must be a force')
 
 

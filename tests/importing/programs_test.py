@@ -4,7 +4,7 @@ import unittest
 import numpy as np
 
 from lab import BOX, ImportCase, Style, lab_plate, plain_plate
-from mcdem.importing.assemble import Known
+from mcdem.importing.mapping import Known
 from mcdem.importing.guess import mapping_of
 from mcdem.importing.mapping import mapping_text
 
@@ -39,14 +39,8 @@ class Yade(ImportCase):
         for scan in self.truth.scans:
             files += [self.write(f"y-spheres-{scan.frame:04}.vtk", vtk_of_spheres(self.truth, scan)),
                       self.write(f"y-intrs-{scan.frame:04}.vtk", vtk_of_interactions(scan))]
-        tables = self.guess(files)
-        self.assertEqual(len(tables), 3)
-        contacts = self.of(tables, "contacts")
-        self.assertEqual(contacts.word("id_offset"), "-6")
-        self.assertEqual(len(contacts.walls), 6)
-        self.assertEqual(contacts.word("fx"), "f_x")
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
+        tables = self.expect_import(files, contacts={"id_offset": "-6", "fx": "f_x"})
+        self.assertEqual((len(tables), len(self.of(tables, "contacts").walls)), (3, 6))
 
 
 class Forces(ImportCase):
@@ -54,29 +48,16 @@ class Forces(ImportCase):
         files = self.write_lab()
         self.write("kontakte.csv", Style(",", ".").table(["Zeit [s]", "id1", "id2", "force_N"], (
             (0.5 * s.frame, str(c.grain + 1), c.partner_text(), f"{np.linalg.norm(c.force):.12g}") for s in self.truth.scans for c in s.contacts)))
-        tables = self.guess(files)
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
+        self.expect_import(files)
 
     def test_of_a_plate_are_measured_by_its_contacts(self):
         files = self.write_lab()
         self.write("kraft.csv", lab_plate(self.truth).replace(" [mN]", "", 1))
         self.known = Known(box=BOX)  # without Hertz's law
-        tables = self.guess(files)
-        self.assertEqual(self.of(tables, "plate").word("force_unit"), "mN")
-        self.assertEqual(self.unclear(tables), [])
+        self.guess_surely(files, plate={"force_unit": "mN"})
         for unit, certainty in (("cN", "sure"), ("daN", "unclear")):
             self.write("kraft.csv", lab_plate(self.truth, Style(force=100)).replace("mN", unit))
             self.assertEqual(self.of(self.guess(files), "plate")["force_unit"].certainty, certainty)
-
-    def test_of_a_plate_are_no_pressures(self):
-        files = self.write_lab()
-        self.write("kraft.csv", Style(",", ".").table(["Time (s)", "height_mm", "Pressure (kPa)"], (
-            (0.5 * s.frame, 1e3 * s.plate_z, s.top_force) for s in self.truth.scans)))
-        tables = self.guess(files)
-        self.assertNotIn("top_force", self.of(tables, "plate"))
-        self.assertEqual(self.of(tables, "plate").word("length_unit"), "mm")
-        self.expect_among(self.unclear(tables), 'role must be confirmed, got "?plate": no column is named as top_force, which a plate')
 
     def test_of_several_columns_with_one_name_must_be_confirmed(self):
         files = self.write_lab()
@@ -120,12 +101,7 @@ class Images(ImportCase):
 
     def test_regions_of_scikit_image_are_z_y_x_in_voxels(self):
         self.known.voxel_size = VOXEL
-        tables = self.guess(self.scikit_image())
-        self.assertEqual(self.unclear(tables), [])
-        grains = self.of(tables, "grains")
-        self.assertEqual([grains.word(axis) for axis in "xyz"], ["centroid-2", "centroid-1", "centroid-0"])
-        self.assertEqual(grains.word("length_unit"), "voxel")
-        self.expect_truth(tables)
+        tables = self.expect_import(self.scikit_image(), grains={"x": "centroid-2", "y": "centroid-1", "z": "centroid-0", "length_unit": "voxel"})
         again = self.by_mapping(mapping_text(mapping_of(tables)))
         self.known.voxel_size = np.nan
         self.expect_truth(again)
@@ -144,20 +120,15 @@ class Images(ImportCase):
 
     def test_units_may_be_named_voxels(self):
         self.known.voxel_size = VOXEL
-        tables = self.guess(self.frames("grains", ["id", "x [px]", "y [px]", "z [px]", "d [px]"], lambda i, x, y, z: (
+        self.expect_import(self.frames("grains", ["id", "x [px]", "y [px]", "z [px]", "d [px]"], lambda i, x, y, z: (
             str(i), x, y, z, self.truth.diameter[i] / VOXEL)))
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
 
     def test_volumes_are_those_of_spheres(self):
         """Labels of Avizo."""
         mm = VOXEL * 1e3
         columns = ["index", "BaryCenterX (mm)", "BaryCenterY (mm)", "BaryCenterZ (mm)", "Volume3d (mm^3)"]
-        tables = self.guess(self.frames("labels", columns, lambda i, x, y, z: (
-            str(i + 1), x * mm, y * mm, z * mm, np.pi / 6 * (1e3 * self.truth.diameter[i]) ** 3)))
-        self.assertEqual(self.unclear(tables), [])
-        self.assertEqual(self.of(tables, "grains").word("volume"), "Volume3d (mm^3)")
-        self.expect_truth(tables)
+        tables = self.expect_import(self.frames("labels", columns, lambda i, x, y, z: (
+            str(i + 1), x * mm, y * mm, z * mm, np.pi / 6 * (1e3 * self.truth.diameter[i]) ** 3)), grains={"volume": "Volume3d (mm^3)"})
         self.expect_truth(self.by_mapping(mapping_text(mapping_of(tables))))
 
     def test_plates_of_testing_machines(self):
@@ -170,9 +141,7 @@ class Images(ImportCase):
                 self.known.plate_start = start
                 files[0] = self.write("machine.csv", Style(",", ".").table(named, (
                     (0.5 * s.frame, 1e3 * (start - s.plate_z), s.top_force) for s in self.truth.scans)))
-                tables = self.guess(files)
-                self.assertEqual(self.unclear(tables), [])
-                self.expect_truth(tables)
+                self.expect_import(files)
 
     def test_trackpys_size_is_no_radius(self):
         """Features of all frames in one table; mass and size refer to the brightness."""
@@ -205,21 +174,17 @@ class Images(ImportCase):
 
     def test_spams_positions_and_displacements_are_added(self):
         self.known.voxel_size = VOXEL
-        tables = self.guess(self.spam_labels())
+        tables = self.expect_import(self.spam_labels())
         self.assertEqual(self.of(tables, "grains")["z"].words, ["Zpos", "Zdisp"])
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
 
     def test_contacts_of_spam_without_forces_are_unused(self):
         self.known.voxel_size = VOXEL
         pairs = [(i, i + 1, 0.5, 0.5, 0.7, 12) for i in range(1, 30)]
         contacts = self.write("contacts.csv", Style(",", ".").table(["label1", "label2", "orientZ", "orientY", "orientX", "voxels"], pairs))
-        tables = self.guess(self.spam_labels() + [contacts])
+        tables = self.expect_import(self.spam_labels() + [contacts])
         unused = next(table.map for table in tables if table.map.files == [contacts])
         self.assertEqual((unused.role, unused.role_certainty), ("unused", "likely"))
         self.assertIn("without forces", unused.role_why)
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
 
     def test_spams_contacts_with_forces_are_contacts(self):
         from lab import PRESSED
@@ -232,10 +197,7 @@ class Images(ImportCase):
             rows = ((str(c.grain + 1), str(c.partner + 1), *(c.point[::-1] / VOXEL), *c.force[::-1]) for c in scan.contacts)
             files.append(self.write(f"forces-{scan.frame:02}.tsv", Style("\t", ".").table(
                 ["label1", "label2", "Zpos", "Ypos", "Xpos", "fz_N", "fy_N", "fx_N"], rows)))
-        tables = self.guess(files)
-        self.assertEqual(self.of(tables, "contacts").word("length_unit"), "voxel")
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
+        self.expect_import(files, contacts={"length_unit": "voxel"})
         self.known.voxel_size = np.nan
         tables = self.guess(files)
         self.assertEqual(self.of(tables, "contacts")["voxel_size"].certainty, "unclear")

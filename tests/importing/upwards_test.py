@@ -29,14 +29,9 @@ class Upwards(ImportCase):
                 self.write("kontakte.csv", lab_contacts(truth["contacts" in which]))]
 
     def test_downwards_from_the_floor_is_seen(self):
-        tables = self.guess(self.write_downwards(0, "plate", "grains", "contacts"))
-        self.assertEqual(self.unclear(tables), [])
-        self.assertEqual(self.of(tables, "plate").word("plate_z"), "-Hoehe [mm]")
-        self.assertEqual(self.of(tables, "grains").word("z"), "-z [mm]")
-        self.assertEqual(self.of(tables, "contacts").word("z"), "-z [mm]")
-        self.assertEqual(self.of(tables, "contacts").word("fz"), "-fz [mN]")
+        tables = self.expect_import(self.write_downwards(0, "plate", "grains", "contacts"), plate={"plate_z": "-Hoehe [mm]"},
+                                    grains={"z": "-z [mm]"}, contacts={"z": "-z [mm]", "fz": "-fz [mN]"})
         self.assertEqual(self.of(tables, "grains").unused, [])
-        self.expect_truth(tables)
         self.expect_truth(self.by_mapping(mapping_text(mapping_of(tables))))
 
     def test_downwards_from_the_plate_must_be_confirmed(self):
@@ -51,27 +46,18 @@ class Upwards(ImportCase):
         self.expect_truth(self.by_mapping(text))
 
     def test_one_table_may_be_downwards_beside_others_that_are_not(self):
-        tables = self.guess(self.write_downwards(0, "plate"))
-        self.assertEqual(self.of(tables, "plate").word("plate_z"), "-Hoehe [mm]")
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
+        self.expect_import(self.write_downwards(0, "plate"), plate={"plate_z": "-Hoehe [mm]"})
         self.expect_one(self.unclear(self.guess(self.write_downwards(0, "plate")[:1])), "where is the floor, as Hoehe [mm] counts?")
         self.expect_among(self.unclear(self.guess(self.write_downwards(-0.03, "plate"))), "origin_z must be confirmed")
-        tables = self.guess(self.write_downwards(0, "contacts"))
-        self.assertEqual(self.of(tables, "contacts").word("fz"), "-fz [mN]")
-        self.assertEqual(self.of(tables, "contacts").word("z"), "-z [mm]")
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
+        self.expect_import(self.write_downwards(0, "contacts"), contacts={"z": "-z [mm]", "fz": "-fz [mN]"})
 
     def test_a_column_name_can_reverse_z_and_the_walls(self):
         files, turned = self.write_downwards(0, "plate"), downwards(self.truth, 0)
         self.write("koerner.csv", lab_grains(turned).replace(";z [mm]", ";Tiefe [mm]"))
         self.write("kontakte.csv", lab_contacts(turned).replace("Deckel", "zmin").replace("Boden", "zmax"))
-        tables = self.guess(files)
-        self.assertEqual(self.unclear(tables), [])
+        tables = self.expect_import(files)
         self.assertEqual(self.of(tables, "grains")["z"].why, "its name says downwards")
         self.assertEqual(self.of(tables, "contacts").walls["zmin"].word, "plate")
-        self.expect_truth(tables)
 
     def test_one_frame_below_zero_may_be_either(self):
         for scan in self.truth.scans[1:]:
@@ -84,10 +70,7 @@ class Upwards(ImportCase):
         self.write("kraft.csv", Style(",", ".").table(["Zeit [s]", "displacement_mm", "force_N"], (
             (0.5 * s.frame, repr(float(-1e3 * (0.0605 - s.plate_z))), repr(float(s.top_force))) for s in self.truth.scans)))
         self.known.plate_start = 0.0605
-        tables = self.guess(files)
-        self.assertEqual(self.of(tables, "plate").word("displacement"), "-displacement_mm")
-        self.assertEqual(self.unclear(tables), [])
-        self.expect_truth(tables)
+        self.expect_import(files, plate={"displacement": "-displacement_mm"})
 
     def test_walls_of_a_turned_axis_must_be_named(self):
         files = self.write_lab()

@@ -3,7 +3,8 @@ import json
 import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 from .errors import InputError
 
@@ -20,7 +21,7 @@ def value_text(key: str, value: object) -> str:
     return toml_value(_plain(value, key))
 
 
-def assignments(values):
+def assignments(values: Mapping[Any, Any]) -> list[str]:
     """`key = value` for each entry of nested tables, with dotted keys: lines of a scene, or overrides. Raises InputError."""
     try:
         return list(_assignments(values, ""))
@@ -28,7 +29,7 @@ def assignments(values):
         raise InputError("tables and lists must be nested less deeply: does one hold itself?") from None
 
 
-def _assignments(table, inside):
+def _assignments(table: Mapping[Any, Any], inside: str) -> Iterator[str]:
     for key, value in table.items():
         name = inside + _key_text(key)
         if isinstance(value, Mapping) and value:
@@ -37,14 +38,14 @@ def _assignments(table, inside):
             yield f"{name} = {value_text(name, value)}"
 
 
-def _key_text(key):
+def _key_text(key: object) -> str:
     """Dotted keys remain dotted."""
     if not isinstance(key, str):
         raise InputError(f"a key must be text, got {key!r}")
     return key if re.fullmatch(r"[\w.-]+", key, re.ASCII) else toml_value(key)
 
 
-def _plain(value, name):
+def _plain(value: Any, name: str) -> Any:
     """The value made of types that json knows."""
     if hasattr(value, "tolist"):  # arrays and scalars of NumPy
         value = value.tolist()

@@ -14,9 +14,9 @@ from .command_line import output_path
 
 if TYPE_CHECKING:
     from ..experiment.experiment import Experiment
-    from ..experiment.settings import Settings
-    from ..importing.assemble import Imported, Known
+    from ..importing.assemble import Imported
     from ..importing.import_files import Attempt
+    from ..importing.mapping import Known
     from ..problems import Problems
 
 EPILOG = """\
@@ -32,7 +32,6 @@ Examples:
   mcdem experiment import data/second/* --mapping out/lab/mapping.toml --metadata data/known.toml --out out/second"""
 
 LARGEST_VOXEL = 1  # [m]
-LARGEST_TEXT = 1_000_000  # bytes of the metadata
 MAPPING = "mapping.toml"
 
 
@@ -75,33 +74,26 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _settings(options: argparse.Namespace, problems: "Problems") -> "Settings":
+def _settings(options: argparse.Namespace, problems: "Problems") -> "Experiment":
     """Values that are not in the tables; their problems are reported together with all others."""
     from ..experiment.settings import parse_settings
-    text = _bytes_of(options.metadata) if options.metadata else b""
+    from ..importing.read_mapping import small_file
+    text = small_file(options.metadata, "a text") if options.metadata else b""
     settings = parse_settings(text, options.metadata or "--set", options.overrides, problems)
     return replace(settings, name=options.name or settings.name or os.path.basename(os.path.abspath(options.out)))
 
 
-def _bytes_of(file: str) -> bytes:
-    from ..files import read_input
-    from ..look import is_file, is_there
-    if not is_file(file) or os.stat(file).st_size > LARGEST_TEXT:
-        raise InputError(f"{file}: must be a text of at most 1 MB, got {'something else' if is_there(file) else 'no such file'}")
-    return read_input(file)
-
-
-def _known(settings: "Settings", voxel_size: float | None) -> "Known":
+def _known(settings: "Experiment", voxel_size: float | None) -> "Known":
     """What the import knows without the tables; where a value is missing, its default."""
-    from ..importing.assemble import Known
-    from ..results.parameters import has_programme
+    from ..importing.mapping import Known
     known = {"youngs_modulus": settings.materials.get("grains.youngs_modulus"),
              "poisson_ratio": settings.materials.get("grains.poisson_ratio"), "voxel_size": voxel_size}
-    return Known(box=(settings.box.size_x, settings.box.size_y), shape=settings.box.shape, plate_start=settings.plate_start,
-                 programme=has_programme(settings.parameters), **{name: value for name, value in known.items() if value is not None})
+    recording = settings.recording
+    return Known(box=(recording.box.size_x, recording.box.size_y), shape=recording.box.shape, plate_start=recording.plate_start,
+                 programme=recording.has_programme, **{name: value for name, value in known.items() if value is not None})
 
 
-def _import(options: argparse.Namespace, settings: "Settings", problems: "Problems", work: pathlib.Path) -> "Experiment":
+def _import(options: argparse.Namespace, settings: "Experiment", problems: "Problems", work: pathlib.Path) -> "Experiment":
     """Makes the experiment in the new folder `work` and moves it to the folder of --out."""
     from ..experiment.publish import publish, read_back
     from ..importing.import_files import import_files
@@ -122,13 +114,13 @@ def _import(options: argparse.Namespace, settings: "Settings", problems: "Proble
     return experiment
 
 
-def _write(work: pathlib.Path, mapping: str, imported: "Imported", settings: "Settings", gzip: bool) -> None:
+def _write(work: pathlib.Path, mapping: str, imported: "Imported", settings: "Experiment", gzip: bool) -> None:
     """All files of the experiment."""
     from ..experiment.settings import settings_text
     from ..experiment.write import SETTINGS_FILE, write_files
     from ..importing.assemble import write_tables
-    if math.isnan(settings.plate_start):
-        settings = replace(settings, plate_start=imported.plate_start)
+    if math.isnan(settings.recording.plate_start):
+        settings = replace(settings, recording=replace(settings.recording, plate_start=imported.plate_start))
     work.mkdir()
     write_tables(imported, work, gzip)
     write_files(work, {MAPPING: mapping.encode(errors="surrogateescape"),

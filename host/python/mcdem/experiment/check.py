@@ -1,13 +1,11 @@
 """Checks what an experiment contains, what is missing, and where it is inconsistent."""
 import numpy as np
 
-from .check_balance import check_balance
-from .check_contacts import check_contacts
+from .check_contacts import check_balance, check_contacts
 from .check_contents import describe
 from .check_grains import check_grains
 from .check_missing import find_missing
-from .check_plate import check_errors, check_plate
-from .check_plate_load import check_plate_load
+from .check_plate import check_errors, check_plate, check_plate_load
 from .experiment import Experiment
 from .findings import Finding, Severity
 

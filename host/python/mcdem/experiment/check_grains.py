@@ -1,13 +1,14 @@
 """Checks whether the grains fit into their box, and how they move."""
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
-from ..results.recording import Bools, Recording
+from ..results.recording import Recording
 from .container import apart, floor_area, wall_distance, walls_of
 from .experiment import Experiment
-from .findings import GRAINS, Findings, Frame, Tally, lengths, odd, positions_of
+from .findings import GRAINS, Findings, Part, lengths, odd, odd_items, positions_of
 from .near_pairs import near_pairs
 
 MIN_FRACTION, MAX_FRACTION = 0.3, 0.95  # of a packing under load
@@ -20,9 +21,10 @@ def check_grains(experiment: Experiment) -> Findings:
     recording = experiment.recording
     if len(recording.diameter):
         yield from _check_volume(recording)
-        yield from _check_walls(recording)
-        yield from _check_overlaps(recording)
-        yield from _check_jumps(recording)
+        yield from odd_items(GRAINS, "grains reach into a wall by more than half their radius: ", _in_walls(recording))
+        yield from odd_items(GRAINS, f"grains overlap by more than {MAX_OVERLAP} of their radii together: ", _overlapping(recording))
+        yield from odd_items(GRAINS, "grains jump by most of a diameter from frame to frame, are they numbered consistently? ",
+                             _jumping(recording))
 
 
 def _check_volume(recording: Recording) -> Findings:
@@ -35,45 +37,30 @@ def _check_volume(recording: Recording) -> Findings:
                           "box too small?")
 
 
-def _check_walls(recording: Recording) -> Findings:
-    box, radius, tally = recording.box, recording.diameter / 2, Tally()
+def _in_walls(recording: Recording) -> Iterator[Part]:
+    """The items are the walls of each grain."""
+    box, radius = recording.box, recording.diameter[:, None] / 2
     walls = walls_of(box)
     for frame in positions_of(recording):
-        inside = radius[:, None] - np.stack([wall_distance(box, wall, frame.plate_z, frame.position) for wall in walls], axis=1)
-        flat = inside.ravel()
-        tally.add(frame.number, (inside > MAX_IN_WALL * radius[:, None]).ravel(),
-                  lambda k: f"grain {k // len(walls)} by {1e3 * flat[k]:.3g} mm in {box.wall_name(walls[k % len(walls)])}")
-    yield from tally.odd(GRAINS, "grains reach into a wall by more than half their radius: ")
+        inside = radius - np.stack([wall_distance(box, wall, frame.plate_z, frame.position) for wall in walls], axis=1)
+        yield (frame.number, (inside > MAX_IN_WALL * radius).ravel(),
+               lambda k: f"grain {k // len(walls)} by {1e3 * inside.flat[k]:.3g} mm in {box.wall_name(walls[k % len(walls)])}")
 
 
-def _overlapping(recording: Recording, frame: Frame) -> Iterator[tuple[Bools, Callable[[int], str]]]:
-    """Blocks of pairs of grains: which overlap too much, and the words for one of them."""
+def _overlapping(recording: Recording) -> Iterator[Part]:
+    """The items are blocks of pairs of neighbours."""
     radius = recording.diameter / 2
-    for i, j in near_pairs(frame.position, recording.box, frame.plate_z, float(recording.diameter.max())):
-        together = radius[i] + radius[j]
-        overlap = together - lengths(apart(recording.box, frame.position[j], frame.position[i]))
-        first, second = np.minimum(i, j), np.maximum(i, j)
-
-        def example(k: int) -> str:
-            return f"grains {first[k]} and {second[k]} by {1e3 * overlap[k]:.3g} mm"
-
-        yield overlap > MAX_OVERLAP * together, example
-
-
-def _check_overlaps(recording: Recording) -> Findings:
-    tally = Tally()
     for frame in positions_of(recording):
-        tally.add_parts(frame.number, _overlapping(recording, frame))
-    yield from tally.odd(GRAINS, f"grains overlap by more than {MAX_OVERLAP} of their radii together: ")
+        for i, j in near_pairs(frame.position, recording.box, frame.plate_z, float(recording.diameter.max())):
+            together = radius[i] + radius[j]
+            overlap = together - lengths(apart(recording.box, frame.position[j], frame.position[i]))
+            yield (frame.number, overlap > MAX_OVERLAP * together,
+                   lambda k: f"grains {min(i[k], j[k])} and {max(i[k], j[k])} by {1e3 * overlap[k]:.3g} mm")
 
 
-def _check_jumps(recording: Recording) -> Findings:
+def _jumping(recording: Recording) -> Iterator[Part]:
     """Loose grains move by up to half a diameter; a move to a neighbour's position indicates exchanged numbers."""
-    tally, before = Tally(), None
-    for frame in positions_of(recording):
-        if before:
-            jump, since = lengths(frame.position - before.position), before.number
-            tally.add(frame.number, jump > MAX_JUMP * recording.diameter + abs(frame.plate_z - before.plate_z),
-                      lambda k: f"grain {k} by {1e3 * jump[k]:.3g} mm since frame {since}")
-        before = frame
-    yield from tally.odd(GRAINS, "grains jump by most of a diameter from frame to frame, are they numbered consistently? ")
+    for before, frame in pairwise(positions_of(recording)):
+        jump = lengths(frame.position - before.position)
+        yield (frame.number, jump > MAX_JUMP * recording.diameter + abs(frame.plate_z - before.plate_z),
+               lambda k: f"grain {k} by {1e3 * jump[k]:.3g} mm since frame {before.number}")

@@ -3,6 +3,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import partial
 
 import numpy as np
 
@@ -25,57 +26,33 @@ class Finding:
 
 
 Findings = Iterator[Finding]
+note, missing, odd = (partial(Finding, severity) for severity in Severity)  # of a file and a text
 
-
-def note(about: str, text: str) -> Finding:
-    return Finding(Severity.note, about, text)
-
-
-def missing(about: str, text: str) -> Finding:
-    return Finding(Severity.missing, about, text)
-
-
-def odd(about: str, text: str) -> Finding:
-    return Finding(Severity.odd, about, text)
+# The number of a frame, or of the frame of each item; which items count; the words for an item.
+Part = tuple[int | Ints, Bools, Callable[[int], str]]
 
 
 class Tally:
     """Counts findings of one kind over the frames and keeps the first one as an example."""
 
-    def __init__(self) -> None:
-        self.count = self._frames = 0
-        self._first = ""
+    def __init__(self, parts: Iterable[Part]) -> None:
+        self.count, frames, first = 0, set[int](), ""
+        for frame, which, example in parts:
+            if which.any():
+                items = np.flatnonzero(which)
+                numbers = np.broadcast_to(frame, which.shape)[items]
+                first = first or f"first in frame {numbers[0]}: {example(int(items[0]))}"
+                self.count += len(items)
+                frames.update(np.unique(numbers).tolist())
+        # "3 in 2 frames, first in frame 7: <example>"
+        self.text = f"{self.count} in {len(frames)} frame{'' if len(frames) == 1 else 's'}, {first}"
 
-    def add(self, frame: int, which: Bools, example: Callable[[int], str]) -> None:
-        """The true ones of a frame's items; `example` gives the words for an item."""
-        if which.any():
-            self._first = self._first or f"first in frame {frame}: {example(int(which.argmax()))}"
-            self.count += int(which.sum())
-            self._frames += 1
 
-    def add_parts(self, frame: int, parts: Iterable[tuple[Bools, Callable[[int], str]]]) -> None:
-        """Those of a frame whose items come in several parts."""
-        before = self._frames
-        for which, example in parts:
-            self.add(frame, which, example)
-        self._frames = min(self._frames, before + 1)
-
-    def add_frames(self, frames: Ints, which: Bools, example: Callable[[int], str]) -> None:
-        """The true ones of several frames; `example` gives the words for one of them."""
-        if which.any():
-            row = int(which.argmax())
-            self.add(int(frames[row]), which, lambda _: example(row))
-            self._frames += int(which.sum()) - 1
-
-    @property
-    def text(self) -> str:
-        """ "3 in 2 frames, first in frame 7: <example>" """
-        return f"{self.count} in {self._frames} frame{'' if self._frames == 1 else 's'}, {self._first}"
-
-    def odd(self, about: str, text: str) -> Findings:
-        """The text and what was found, if anything was."""
-        if self.count:
-            yield odd(about, text + self.text)
+def odd_items(about: str, text: str, parts: Iterable[Part]) -> Findings:
+    """The text and what was found, if anything was."""
+    tally = Tally(parts)
+    if tally.count:
+        yield odd(about, text + tally.text)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,10 +65,8 @@ class Frame:
 
 
 def frames_of(recording: Recording) -> Iterator[Frame]:
-    """Those with positions or contacts."""
     scans = recording.scans
-    rows = zip(scans.frame.tolist(), scans.plate_z.tolist(), scans.top_force.tolist(), scans.position, scans.contacts)
-    yield from (Frame(*row) for row in rows if len(row[3]) or len(row[4]))
+    return map(Frame, scans.frame.tolist(), scans.plate_z.tolist(), scans.top_force.tolist(), scans.position, scans.contacts)
 
 
 def positions_of(recording: Recording) -> Iterator[Frame]:
@@ -104,9 +79,14 @@ def contacts_of(recording: Recording) -> Iterator[Frame]:
     return (frame for frame in frames_of(recording) if len(frame.contacts))
 
 
+def placed_contacts_of(recording: Recording) -> Iterator[Frame]:
+    """Frames with contacts and positions."""
+    return (frame for frame in contacts_of(recording) if len(frame.position))
+
+
 def lengths(vectors: Floats) -> Floats:
     """(N,) of vectors (N, 3)."""
-    return np.asarray(np.linalg.norm(vectors, axis=1))
+    return np.asarray(np.sqrt((vectors * vectors).sum(axis=1)))
 
 
 def upper_median(values: Floats) -> float:

@@ -14,6 +14,7 @@ from ..results.parameters import value_of
 from ..results.recording import NO_CONTACTS, NO_VECTORS, Recording, Run
 from .experiment import MATERIALS, Experiment, Measurement
 from .instrument import Instrument, measured
+from .plate import scan_places
 from .publish import expect_free, publish, read_back, work_folder
 from .write import SUMS_FILE, experiment_files, sums_text, write_files
 
@@ -42,8 +43,8 @@ def write_from_run(options: Options) -> str:
     expect_free(options.out)
     uncertainty = read_uncertainty(options.uncertainty)
     try:
-        header = run_of(_engine.read(options.run, what="observables"))
-        run = _engine.read_replica(options.run, chosen_replica(header, options))
+        labels = [one.label for one in _engine.read(options.run, what="observables")]
+        run = _engine.read_replica(options.run, chosen_replica(labels, options))
         truth = _whole_recording(run_of(run), options)
     except UnicodeDecodeError as error:
         raise InputError(f"{options.run}: holds a text that is not UTF-8 ({error.reason})") from error
@@ -74,9 +75,9 @@ def experiment_from(seen: Recording, measurement: Measurement) -> Experiment:
     return Experiment(seen.label, seen, materials, measurement=measurement)
 
 
-def chosen_replica(run: Run, options: Options) -> int:
-    """The number of a recording. Raises InputError."""
-    labels, wanted = [recording.label for recording in run.recordings], options.replica
+def chosen_replica(labels: Sequence[str], options: Options) -> int:
+    """The number of the replica that is asked for. Raises InputError."""
+    wanted = options.replica
     if wanted in labels:
         return labels.index(wanted)
     if re.fullmatch(r"\+?\d{1,9}", wanted, re.ASCII) and int(wanted) < len(labels):
@@ -123,8 +124,7 @@ def expect_measurable(truth: Recording, options: Options) -> None:
 
 def _expect_all_scans(truth: Recording) -> None:
     """Each frame of an experiment with a programme is a scan of its stages."""
-    from .. import _engine
-    scans, places = len(truth.scans), len(_engine.scan_places(truth.parameters, truth.plate_start))  # plus one at rest
+    scans, places = len(truth.scans), len(scan_places(truth))  # plus one at rest
     if scans != places + 1:
         raise InputError(f"the run must have the {places} scans of its programme and one before them, at rest, got {scans}: run it to its "
                          "end, with protocol.scan_at_start = true")

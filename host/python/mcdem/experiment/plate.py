@@ -1,6 +1,7 @@
 """plate.csv: one scan for each row. Those of a programme must be its scans, in order."""
 import math
 import pathlib
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from ..number_text import shortest
 from ..problems import Problems, quoted
 from ..results.names import Phase, Wall, all_names, parse
-from ..results.recording import NO_CONTACTS, NO_VECTORS, Bools, Floats, Recording, Scans
+from ..results.recording import NO_CONTACTS, NO_VECTORS, Bools, Recording, Scans
 from ..results.run_file import KINDS, ROW_SHAPES, SCAN_FIELDS
 from .row_problems import RowProblems
 from .table import NUMBER, NUMBER_OR_NOTHING, WHOLE, Kind, Table, read_table
@@ -101,13 +102,17 @@ def _with_scans(recording: Recording, table: Table) -> Recording:
     return replace(recording, scans=scans)
 
 
+def scan_places(recording: Recording) -> list[dict[str, Any]]:
+    """Where and how the stages of the programme place each scan after that at rest (_engine.scan_places)."""
+    from .. import _engine
+    return _engine.scan_places(recording.parameters, recording.plate_start)
+
+
 def set_forces(recording: Recording) -> list[float | None]:
     """By scan, the prescribed force [N]; None if the programme does not prescribe one."""
-    from .. import _engine
     forces: list[float | None] = [None] * len(recording.scans)
     before, leg = math.nan, -1  # force kept by a hold that does not set one
-    places = _engine.scan_places(recording.parameters, recording.plate_start)
-    for scan, place in enumerate(places[:max(len(forces) - 1, 0)], 1):
+    for scan, place in enumerate(scan_places(recording)[:max(len(forces) - 1, 0)], 1):
         if place["leg"] != leg:
             before, leg = float(recording.scans.top_force[scan - 1]), place["leg"]
         is_set = not math.isnan(place["set"])
@@ -122,53 +127,41 @@ def _check_programme(table: Table, recording: Recording, problems: Problems) -> 
         problems.add(table.where(1), "the header must name time_s where experiment.toml states a [[programme]]: when each row was measured "
                                      "[s]")
         return
-    from .. import _engine
-    places = _engine.scan_places(recording.parameters, recording.plate_start)
+    scans, places = recording.scans, scan_places(recording)
     if len(table) != len(places) + 1:
         problems.add(table.name, f"must have {len(places) + 1} rows, one of the packing at rest and one for each of the {len(places)} "
                                  f"scans of [[programme]] in experiment.toml, got {len(table)}: state the scans of its stages as they "
                                  "were measured (scans, scan_at)")
         return
-    rows = _ProgrammeRows(table, recording, problems)
+    stroke = float(np.max(recording.displacement, initial=0))  # [m]
+    stated_force = table.values.get("set_force_N", np.full(len(table), np.inf))  # infinite: not prescribed
+    before: dict[str, Any] = {"leg": None}
     for row, place in enumerate(places, 1):
-        stage = f"stage {place['stage'] + 1} of [[programme]] in experiment.toml"
+        stage, goal, force = f"stage {place['stage'] + 1} of [[programme]] in experiment.toml", place["set"], stated_force[row]
+
+        def problem(what: str) -> None:
+            problems.add(table.where(int(table.line[row])), what)
+
         if place["by"] == "force":
-            rows.check_force(row, place["set"], stage)
+            _check_force(float(scans.top_force[row]), force, goal, stage, problem)
         else:
-            rows.check_position(row, place["set"], stage)
-        before = places[row - 2] if row > 1 else None
-        if place["held"] and before and before["leg"] == place["leg"]:
-            rows.check_time(row, place["time"] - before["time"], recording.value(f"programme.{place['stage'] + 1}.time"), stage)
+            if np.isfinite(force):
+                problem(f"set_force_N must be empty, got {shortest(force)}: {stage} sets a position")
+            if abs(scans.plate_z[row] - goal) > FAR_POSITION * stroke:
+                problem(f"plate_z_m must be near {goal:.6g} m, which {stage} sets, got {shortest(scans.plate_z[row])}: {IN_ORDER}")
+        if place["held"] and before["leg"] == place["leg"]:
+            interval, time = place["time"] - before["time"], scans.time[row] - scans.time[row - 1]
+            if abs(time - interval) > FAR_TIME * recording.value(f"programme.{place['stage'] + 1}.time"):
+                problem(f"time_s must be {interval:.6g} s after the row before, as {stage} holds, got {time:.6g} s: state when the hold was "
+                        "scanned (time, scans, scan_at)")
+        before = place
 
 
-class _ProgrammeRows:
-    """Compares rows of plate.csv with what stages of the programme set."""
-
-    def __init__(self, table: Table, recording: Recording, problems: Problems) -> None:
-        self.table, self.scans, self.problems = table, recording.scans, problems
-        self.stroke = float(np.max(recording.displacement, initial=0))  # [m]
-        self.set_force: Floats = table.values.get("set_force_N", np.full(len(table), np.inf))  # infinite: not prescribed
-
-    def problem(self, row: int, what: str) -> None:
-        self.problems.add(self.table.where(int(self.table.line[row])), what)
-
-    def check_position(self, row: int, position: float, stage: str) -> None:
-        z, force = self.scans.plate_z[row], self.set_force[row]
-        if np.isfinite(force):
-            self.problem(row, f"set_force_N must be empty, got {shortest(force)}: {stage} sets a position")
-        if abs(z - position) > FAR_POSITION * self.stroke:
-            self.problem(row, f"plate_z_m must be near {position:.6g} m, which {stage} sets, got {shortest(z)}: {IN_ORDER}")
-
-    def check_force(self, row: int, set_force: float, stage: str) -> None:
-        top, force = self.scans.top_force[row], self.set_force[row] if np.isfinite(self.set_force[row]) else set_force
-        if abs(force - set_force) > OTHER_FORCE * set_force:
-            self.problem(row, f"set_force_N must be {set_force:.6g} N, which {stage} sets, got {shortest(force)}: {IN_ORDER}")
-        elif abs(top - force) > FAR_FORCE * force:
-            self.problem(row, f"top_force_N must be near {force:.6g} N, which {stage} sets, got {shortest(top)}: {IN_ORDER}")
-
-    def check_time(self, row: int, interval: float, whole: float, stage: str) -> None:
-        """`interval` since the row before, `whole`: duration of the hold [s]."""
-        time = self.scans.time[row] - self.scans.time[row - 1]
-        if abs(time - interval) > FAR_TIME * whole:
-            self.problem(row, f"time_s must be {interval:.6g} s after the row before, as {stage} holds, got {time:.6g} s: state when the "
-                              "hold was scanned (time, scans, scan_at)")
+def _check_force(top: float, force: float, goal: float, stage: str, problem: Callable[[str], None]) -> None:
+    """`force`: that of the row, infinite if it states none; `goal`: that of the stage, NaN if it sets none [N]."""
+    if not np.isfinite(force):
+        force = goal
+    if abs(force - goal) > OTHER_FORCE * goal:
+        problem(f"set_force_N must be {goal:.6g} N, which {stage} sets, got {shortest(force)}: {IN_ORDER}")
+    elif abs(top - force) > FAR_FORCE * force:
+        problem(f"top_force_N must be near {force:.6g} N, which {stage} sets, got {shortest(top)}: {IN_ORDER}")

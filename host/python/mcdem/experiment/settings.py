@@ -3,10 +3,13 @@ import math
 import os
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from .. import toml_lines
 from ..errors import InputError
 from ..files import read_input
 from ..number_text import shortest
@@ -14,10 +17,10 @@ from ..problems import Problems, quoted
 from ..results.names import ContainerShape, parse
 from ..results.parameters import Parameters, has_programme
 from ..results.recording import Box, Recording
+from ..results.run_file import no_scans
 from ..toml import value_text
-from . import toml_lines
+from ..toml_lines import Document, TomlError, Where
 from .experiment import MATERIALS, Experiment, Measurement
-from .toml_lines import Document, TomlError, Where
 
 LONGEST_KEY = 1000  # in --set
 LARGEST_BOX = 20  # [m]; a larger one was given in millimetres
@@ -66,45 +69,32 @@ LIMITS = {
 }
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Fields of an experiment and of its recording; those that experiment.toml does not state have their defaults."""
+def read_settings(file: Path, problems: Problems) -> Experiment:
+    """An experiment without scans, from a file that is there; the default name is that of its folder.
 
-    name: str = ""
-    box: Box = field(default_factory=Box)
-    plate_start: float = math.nan  # [m]; NaN: not stated
-    parameters: Parameters = field(default_factory=dict)  # materials and the stages of a programme, as text
-    materials: dict[str, float] = field(default_factory=dict)
-    uncertainty: dict[str, float] = field(default_factory=dict)
-    measurement: Measurement = field(default_factory=Measurement)
-    plate_speed: float | None = None  # [m/s]
-    plate_pause: float = 0.0  # [s]
-    plate_hold: float = 0.0  # [s]
-
-    def experiment(self, recording: Recording) -> Experiment:
-        """With these materials, errors and times."""
-        return Experiment(self.name, recording, self.materials, self.uncertainty, self.measurement, self.plate_speed, self.plate_pause,
-                          self.plate_hold)
-
-
-def read_settings(file: Path, problems: Problems) -> Settings:
-    """Of a file that is there; the default name is that of its folder. Raises InputError, RunError, OSError if it cannot be read."""
+    Raises InputError, RunError, OSError if it cannot be read.
+    """
     return parse_settings(read_input(file), str(file), (), problems, os.path.splitext(file.parent.name or ".")[0])
 
 
-def parse_settings(text: bytes, file: str, overrides: Sequence[str], problems: Problems, name: str = "") -> Settings:
-    """Settings from TOML text (may be empty) and overrides "grains.youngs_modulus=23300", which have precedence.
+def parse_settings(text: bytes, file: str, overrides: Sequence[str], problems: Problems, name: str = "") -> Experiment:
+    """An experiment without scans, from TOML text (may be empty) and overrides "grains.youngs_modulus=23300", which have precedence.
 
-    `name` is the default. Problems are added, each with its line of the file, or with --set.
+    `name` is the default. What is not stated has its default; plate_start is NaN then. Problems are added, each with its line of the file,
+    or with --set.
     """
     try:
         document = toml_lines.parse(_decoded(text))
     except TomlError as error:
         problems.add(f"{file}:{error.line}", error.what)
-        return Settings(name)
+        return Experiment(name, _without_scans(name, {}, Box()))
     for word in overrides:
         _override(document, word, problems)
     return _Reader(document, file, problems).read(name)
+
+
+def _without_scans(name: str, parameters: Parameters, box: Box, plate_start: float | None = None) -> Recording:
+    return Recording(name, parameters, box, math.nan if plate_start is None else plate_start, np.zeros(0), no_scans())
 
 
 def _decoded(text: bytes) -> str:
@@ -154,7 +144,7 @@ class _Reader:
         self.document, self.file, self.problems = document, file, problems
         self.known = {"name", "programme"}
 
-    def read(self, name: str) -> Settings:
+    def read(self, name: str) -> Experiment:
         if (stated := self.document.at(("name",))) is not None:
             name = stated if isinstance(stated, str) else ""
             if not isinstance(stated, str):
@@ -172,7 +162,7 @@ class _Reader:
         errors = Measurement(*(self.number(f"measurement.{error}") or 0.0 for error in names))
         parameters = {key: shortest(value) for key, value in materials.items()} | self.programme(box, start)
         self.report_unknown(self.document.root)
-        return Settings(name, box, math.nan if start is None else start, parameters, materials, uncertainty, errors, speed, pause, hold)
+        return Experiment(name, _without_scans(name, parameters, box, start), materials, uncertainty, errors, speed, pause, hold)
 
     def problem(self, where: Where, what: str) -> None:
         line = self.document.lines.get(where)
@@ -272,35 +262,28 @@ def _stage_text(key: str, value: Any) -> str:
         return "[{}]" if isinstance(value, list) else "{}" if isinstance(value, dict) else str(value)
 
 
-def settings_of(experiment: Experiment) -> Settings:
-    """Those from which experiment.toml is written."""
-    recording = experiment.recording
-    return Settings(experiment.name, recording.box, recording.plate_start, recording.parameters, experiment.materials,
-                    experiment.uncertainty, experiment.measurement, experiment.plate_speed, experiment.plate_pause, experiment.plate_hold)
-
-
-def settings_text(stated: Settings | Experiment) -> str:
+def settings_text(experiment: Experiment) -> str:
     """The text of experiment.toml, with exact numbers."""
-    settings = stated if isinstance(stated, Settings) else settings_of(stated)
+    parameters = experiment.recording.parameters
     tables = [f"[{name}]" + "".join(f"\n{key} = {value}" for key, value in sorted(values.items()))
-              for name, values in sorted(_tables(settings).items())]
-    if has_programme(settings.parameters):
+              for name, values in sorted(_tables(experiment).items())]
+    if has_programme(parameters):
         from .. import _engine
-        tables.append(_engine.programme_text(settings.parameters))
-    return "\n\n".join([f"name = {_text(settings.name)}", *tables]) + "\n"
+        tables.append(_engine.programme_text(parameters))
+    return "\n\n".join([f"name = {_text(experiment.name)}", *tables]) + "\n"
 
 
-def _tables(settings: Settings) -> dict[str, dict[str, str]]:
+def _tables(experiment: Experiment) -> dict[str, dict[str, str]]:
     """The keys of each table with their values as text."""
-    materials = {group: _of_group(settings.materials, group) for group in ("grains", "walls")}
-    sigmas = {f"uncertainty.{group}": _of_group(settings.uncertainty, group) for group in ("grains", "walls")}
-    plate = {"start": settings.plate_start, "pause": settings.plate_pause, "hold": settings.plate_hold}
+    materials = {group: _of_group(experiment.materials, group) for group in ("grains", "walls")}
+    sigmas = {f"uncertainty.{group}": _of_group(experiment.uncertainty, group) for group in ("grains", "walls")}
+    plate = {"start": experiment.recording.plate_start, "pause": experiment.plate_pause, "hold": experiment.plate_hold}
     plate = {key: value for key, value in plate.items() if key == "start" or value > 0}
-    if settings.plate_speed is not None:
-        plate["speed"] = settings.plate_speed
+    if experiment.plate_speed is not None:
+        plate["speed"] = experiment.plate_speed
     tables = {group: {key: _number(value) for key, value in values.items()}
-              for group, values in {**materials, **sigmas, "plate": plate, "measurement": asdict(settings.measurement)}.items()}
-    box = settings.box
+              for group, values in {**materials, **sigmas, "plate": plate, "measurement": asdict(experiment.measurement)}.items()}
+    box = experiment.recording.box
     if box.shape != ContainerShape.box:
         tables["container"] = {"shape": _text(box.shape)}
     if box.is_cylinder:

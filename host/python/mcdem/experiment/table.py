@@ -43,7 +43,7 @@ class Kind:
             values = {word: WRONG if value is None else int(value) for word, value in known.items()}
             return np.fromiter(map(values.__getitem__, words), np.int64, len(words))
         try:
-            numbers = np.array(list(map(float, words))) if is_ascii and "_" not in "".join(words) else None
+            numbers = np.fromiter(map(float, words), float, len(words)) if is_ascii and "_" not in "".join(words) else None
         except ValueError:
             numbers = None
         if numbers is None:

@@ -11,27 +11,14 @@ from ..look import Path
 from ..number_text import shortest
 from ..problems import Problems
 from .boxes import check_boxes
-from .contacts import import_contacts
-from .grains import import_grains
-from .mapping import WALLS
+from .contacts import ContactFrames, import_contacts
+from .grains import GrainFrames, import_grains
+from .mapping import WALLS, Known
 from .plate import PlateRows, check_heights, import_plate
-from .rows import of_role
+from .rows import ImportTable, Rows, of_role
 
 # For the two sides of a contact: largest difference over the larger force; weak forces over the largest one of the frame.
 MAX_APART, WEAK = 0.5, 0.01
-
-
-@dataclass
-class Known:
-    """Values that are not in the tables, including the scale that distinguishes millimetres from metres."""
-
-    box: tuple = (0.0, 0.0)  # [m]; 0: unknown
-    shape: str = "box"  # or cylinder, periodic
-    plate_start: float = np.nan
-    youngs_modulus: float = np.nan  # of the grains [Pa]
-    poisson_ratio: float = 0.4
-    voxel_size: float = np.nan  # [m]
-    programme: bool = False  # rows have times
 
 
 @dataclass
@@ -39,18 +26,18 @@ class Imported:
     """The tables of an experiment folder, and notes about ignored data."""
 
     plate: pd.DataFrame
-    grains: pd.DataFrame
-    contacts: pd.DataFrame
+    grains: pd.DataFrame | None
+    contacts: pd.DataFrame | None
     plate_start: float
-    notes: list = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
 
 class _Assembly:
-    def __init__(self, tables, known):
+    def __init__(self, tables: list[ImportTable], known: Known) -> None:
         self.tables, self.known, self.problems = tables, known, Problems()
-        self.plate, self.grains, self.notes, self.dropped = PlateRows(), None, [], 0
+        self.plate, self.grains, self.notes, self.dropped = PlateRows(), GrainFrames(), list[str](), 0
 
-    def run(self):
+    def run(self) -> Imported:
         plates, grains, contacts = (of_role(self.tables, role) for role in ("plate", "grains", "contacts"))
         start = self.known.plate_start
         if len(plates) != 1:
@@ -69,15 +56,14 @@ class _Assembly:
         if grains:
             self.place_grains(grains[0].map.word("frames_by", "plate"))
         check_heights(self.plate, start, self.dropped)
-        tables = []
-        if self.grains.row is not None and -1 not in self.grains.row:
-            for table in contacts:
-                tables.append(self.contacts_of(table, tables))
+        tables = list[pd.DataFrame]()
+        for table in contacts if -1 not in self.grains.row else ():
+            tables.append(self.contacts_of(table, tables))
         self.problems.report()
         return self.result(pd.concat(tables) if tables else None)
 
-    def place_grains(self, by):
-        def wrong(frame, topic, what):
+    def place_grains(self, by: str) -> None:
+        def wrong(frame: int, topic: str, what: str) -> None:
             rows, first = grains.where[frame]
             rows.problem_once(topic, first, f"frame {shortest(grains.keys[frame])} must {what} in the mapping")
 
@@ -100,7 +86,7 @@ class _Assembly:
             self.dropped = min(grains.row)
             self.notes.append(f"the plate's first {self.dropped} rows are left out: grains are known from then on")
 
-    def contacts_of(self, table, before):
+    def contacts_of(self, table: ImportTable, before: list[pd.DataFrame]) -> pd.DataFrame:
         """Each contact once, with grain < partner, by row of the plate."""
         by = table.map.word("frames_by", "plate")
         frames = import_contacts(table, self.grains, self.problems)
@@ -118,7 +104,7 @@ class _Assembly:
         all_of = all_of[all_of.scan >= 0].reset_index(drop=True)
         return self.put_points(self.joined(all_of, table.map.word("sides", "one") == "both", frames.rows, before), frames)
 
-    def joined(self, contacts, both, rows, before):
+    def joined(self, contacts: pd.DataFrame, both: bool, rows: Rows, before: list[pd.DataFrame]) -> pd.DataFrame:
         """The mean of both sides if contacts are listed from both. Weak forces may differ more, because their errors are those of
         the strong ones."""
         pair, forces = ["scan", "grain", "partner"], ["fx", "fy", "fz"]
@@ -140,7 +126,7 @@ class _Assembly:
                               'of the sides out of the table and write `sides = "one"`')
         return of_pairs.agg({"row": "first", **dict.fromkeys(["x", "y", "z", *forces], "mean")}).reset_index()
 
-    def put_points(self, contacts, frames):
+    def put_points(self, contacts: pd.DataFrame, frames: ContactFrames) -> pd.DataFrame:
         """Contact points that were not measured: midway between the surfaces; on a wall, the foot of the perpendicular."""
         lost = np.flatnonzero(contacts.x.isna())
         frame = self.grains.frames_at(contacts.scan[lost])
@@ -162,7 +148,7 @@ class _Assembly:
         contacts.loc[lost, ["x", "y", "z"]] = point
         return contacts
 
-    def result(self, contacts):
+    def result(self, contacts: pd.DataFrame | None) -> Imported:
         plate, grains, first, start = self.plate, self.grains, self.dropped, self.known.plate_start
         rows = slice(first, None)
         if not np.isfinite(start):
@@ -189,7 +175,7 @@ class _Assembly:
         return Imported(plate_table, grain_table, contacts, start, self.notes)
 
 
-def import_tables(tables, known):
+def import_tables(tables: list[ImportTable], known: Known) -> Imported:
     return _Assembly(tables, known).run()
 
 

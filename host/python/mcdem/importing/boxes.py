@@ -1,11 +1,18 @@
 """Boxes in the files of simulation programs, and whether they contradict the container of the experiment."""
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import InputError
-from ..problems import quoted, to_number
-from .mapping import signed_column
+from ..problems import Problems, quoted, to_number
+from .arrays import Floats
+from .mapping import Known, MappedTable, signed_column
+
+if TYPE_CHECKING:
+    from .grains import GrainFrames
+    from .tables import Table
 
 # Of bounds with six digits, as LIGGGHTS writes them (%g): half a unit of the last digit of both, and of the experiment's number.
 ROUNDING = 1e-5
@@ -17,21 +24,21 @@ class Box:
     """In the units of its table."""
 
     line: int  # 0: unknown
-    low: np.ndarray  # [3] corner
-    edges: np.ndarray  # [3][3] a row for each edge
+    low: Floats  # [3] corner
+    edges: Floats  # [3][3] a row for each edge
     faces: str  # of SIDES: p periodic, f fixed, s or m follows the grains, ? not said
 
 
-def _numbers(table, lines, line, count):
+def _numbers(table: "Table", lines: list[str], line: int, count: int) -> list[float]:
     cells = lines[line - 1].partition("#")[0].split() if line <= len(lines) else []
-    values = [to_number(cell) for cell in cells[:count]]
-    if len(values) < count or None in values:
+    values = [value for cell in cells[:count] if (value := to_number(cell)) is not None]
+    if len(values) < count:
         raise InputError(f"{table.file}:{min(line, len(lines))}: a line of the box must begin with {count} numbers, got "
                          + quoted(lines[line - 1] if line <= len(lines) else "the file's end"))
     return values
 
 
-def dump_box(table, lines, title, line):
+def dump_box(table: "Table", lines: list[str], title: str, line: int) -> Box:
     """The three lines from `line` on, below `ITEM: BOX BOUNDS ..`. https://docs.lammps.org/dump.html"""
     words = title.split()[2:]
     flags = [word for word in words if len(word) == 2 and set(word) <= set("pfsm")]
@@ -41,19 +48,19 @@ def dump_box(table, lines, title, line):
         return Box(line, rows[:, 3], rows[:, :3], faces)
     rows = np.array([_numbers(table, lines, line + axis, 3 if "xy" in words else 2) for axis in range(3)])
     low, high = rows[:, 0].copy(), rows[:, 1].copy()
-    xy, xz, yz = rows[:, 2] if "xy" in words else (0.0, 0.0, 0.0)
+    xy, xz, yz = rows[:, 2] if "xy" in words else np.zeros(3)
     low -= [min(0, xy, xz, xy + xz), min(0, yz), 0]  # those of the corners are given
     high -= [max(0, xy, xz, xy + xz), max(0, yz), 0]
     return _upright(line, low, high, (xy, xz, yz), faces)
 
 
-def _upright(line, low, high, tilts, faces="??????"):
+def _upright(line: int, low: Floats, high: Floats, tilts: Sequence[float], faces: str = "??????") -> Box:
     edges = np.diag(np.subtract(high, low))
     edges[1, 0], edges[2, 0], edges[2, 1] = tilts
     return Box(line, np.array(low, float), edges, faces)
 
 
-def data_box(table, lines, end):
+def data_box(table: "Table", lines: list[str], end: int) -> Box | None:
     """Of the header of a data file, its first `end` lines; None if it says none. https://docs.lammps.org/read_data.html"""
     found = {}
     for number in range(2, end):
@@ -72,7 +79,7 @@ def data_box(table, lines, end):
     return _upright(line, low, high, found.get("xy", (0, (0.0, 0.0, 0.0)))[1])
 
 
-def xyz_box(atoms, states_pbc):
+def xyz_box(atoms: Any, states_pbc: bool) -> Box | None:
     """Of ASE's atoms; None without a lattice. ASE takes a lattice of which the file does not say so for periodic."""
     edges = np.array(atoms.cell)
     if not edges.any():
@@ -82,8 +89,8 @@ def xyz_box(atoms, states_pbc):
     return Box(0, low, edges, "".join("pp" if repeats else "ff" for repeats in atoms.pbc) if states_pbc else "??????")
 
 
-def _in_metres(box, mapped):
-    """In the axes of the experiment; None if x, y and z are not the table's own axes in some order."""
+def _in_metres(box: Box, mapped: MappedTable) -> tuple[Box, Floats, Floats] | None:
+    """In the axes of the experiment, its size along them and the error of its ends; None if x, y and z are not the table's own axes in some order."""
     sign, names = zip(*(signed_column(mapped.word(key)) for key in "xyz"))
     axes = ["xyz".find(name[:1].lower()) if name[1:] in ("", "u") else -1 for name in names]
     if sorted(axes) != [0, 1, 2]:
@@ -95,8 +102,9 @@ def _in_metres(box, mapped):
     return Box(box.line, ends.min(axis=0), edges, faces), np.abs(np.diag(edges)), ROUNDING * np.abs(ends).max(axis=0)
 
 
-def _contradiction(box, size, small, grains, known):
+def _contradiction(moved: tuple[Box, Floats, Floats], grains: Floats, known: Known) -> tuple[str, bool]:
     """What contradicts the container, or nothing; and whether it is certain. `grains`: lowest and highest ends of the grains [2][3]."""
+    box, size, small = moved
     widths, periodic = np.array([*known.box, 0.0]), known.shape == "periodic"
     tilt = box.edges - np.diag(np.diag(box.edges))
     if periodic:  # whole periods give the same images
@@ -127,7 +135,7 @@ def _contradiction(box, size, small, grains, known):
     return uncertain, False
 
 
-def check_boxes(grains, known, problems, notes):
+def check_boxes(grains: "GrainFrames", known: Known, problems: Problems, notes: list[str]) -> None:
     """Compares the boxes of all frames of grains (GrainFrames) with the known container; one finding for each file."""
     told = set()
     for frame, (rows, first) in enumerate(grains.where):
@@ -142,7 +150,7 @@ def check_boxes(grains, known, problems, notes):
         if len(centres) < len(radius):  # a problem already
             continue
         ends = np.array([(centres - radius).min(axis=0), (centres + radius).max(axis=0)])
-        what, certain = _contradiction(*moved, ends, known)
+        what, certain = _contradiction(moved, ends, known)
         if what:
             told.add(part.file)
             where = part.file + (f":{box.line}" if box.line else "")

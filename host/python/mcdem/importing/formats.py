@@ -3,28 +3,34 @@ import contextlib
 import io
 import math
 import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from ..errors import InputError
 from ..files import temporary_folder
-from ..problems import quoted, to_number
+from ..problems import quoted
+from .arrays import Floats
 from .boxes import data_box, dump_box, xyz_box
 from .text import Form, numbers_of
+
+if TYPE_CHECKING:
+    from .tables import Table
 
 ITEM = "ITEM: "
 
 
-def _whole(word):
+def _whole(word: str) -> int | None:
     """A whole number >= 0, or None."""
     return int(word) if re.fullmatch(r"\+?[0-9]{1,18}", word) else None
 
 
-def _wrong(table, line, what):
+def _wrong(table: "Table", line: int, what: str) -> NoReturn:
     raise InputError(f"{table.file}:{line}: {what}")
 
 
-def parse_dump(table, lines):
+def parse_dump(table: "Table", lines: list[str]) -> None:
     """`dump custom` (ITEM: ATOMS) and `dump local` (ITEM: ENTRIES), any number of frames, each with the names of its columns."""
     table.begin("dump", lines, Form(" ", "."))
     items = [n for n, line in enumerate(lines, 1) if line.lstrip().startswith(ITEM)] + [len(lines) + 1]
@@ -61,7 +67,7 @@ def parse_dump(table, lines):
                 if cells:
                     table.add_row(cells, number)
             found = table.rows - table.frames[-1][1]
-            if count not in (None, found):
+            if count is not None and count != found:
                 _wrong(table, line, f"must have the {count} rows that the frame promises, got {found}"
                        + ("; truncated?" if found < count else ""))
             step = None
@@ -69,12 +75,12 @@ def parse_dump(table, lines):
         raise InputError(f"{table.file}: must hold at least one frame, got none")
 
 
-def looks_like_data(lines):
+def looks_like_data(lines: list[str]) -> bool:
     words = [line.partition("#")[0].split() for line in lines[1:2000]]
     return ["Atoms"] in words and any(one[1:] == ["atoms"] for one in words[:words.index(["Atoms"])])
 
 
-def parse_data(table, lines):
+def parse_data(table: "Table", lines: list[str]) -> None:
     """LAMMPS data files of the styles sphere and granular: id type diameter density x y z, in the order of the ids."""
     words_of = [line.partition("#")[0].split() for line in lines]
     start = words_of.index(["Atoms"], 1) + 1
@@ -83,8 +89,8 @@ def parse_data(table, lines):
     for number, words in enumerate(words_of[start:], start + 1):
         if words and words[0][0].isalpha() and len(words) < 7:
             break  # the next section
-        values = [to_number(word) for word in words]
-        if words and (len(words) not in (7, 10) or None in values or values[2] <= 0):
+        values = numbers_of(words, ".")
+        if words and (len(words) not in (7, 10) or not all(map(math.isfinite, values)) or values[2] <= 0):
             _wrong(table, number, "an atom must have 7 columns (id type diameter density x y z) or 10 (3 image flags more), numbers with "
                    f"a diameter > 0, got {quoted(' '.join(words))}")
         if words:
@@ -92,18 +98,18 @@ def parse_data(table, lines):
     if not rows or promised != len(rows):
         raise InputError(f"{table.file}: must have the {promised} atoms that it promises, at least 1, got {len(rows)}; truncated?")
     table.boxes.append(data_box(table, lines, start))
-    rows = np.array(rows)
-    _, order = np.unique(rows[:, 0], return_index=True)
-    if len(order) < len(rows):
+    atoms = np.array(rows)
+    _, order = np.unique(atoms[:, 0], return_index=True)
+    if len(order) < len(atoms):
         raise InputError(f"{table.file}: each atom must have its own id, got one twice")
-    table.set_numbers("data", ["x", "y", "z", "diameter"], rows[order][:, [4, 5, 6, 2]])
+    table.set_numbers("data", ["x", "y", "z", "diameter"], atoms[order][:, [4, 5, 6, 2]])
 
 
-def parse_xyz(table, text):
+def parse_xyz(table: "Table", text: str) -> None:
     """Extended xyz, frame by frame, read by ASE; vectors become name_x, name_y, name_z."""
     from ase.io import iread
 
-    frames, names, rows = [], None, 0
+    frames, names, rows = list[Floats](), list[str](), 0
     try:
         for place, atoms in enumerate(iread(io.StringIO(text), format="extxyz", index=":")):
             fields = {name: values for name, values in sorted(atoms.arrays.items())
@@ -124,13 +130,13 @@ def parse_xyz(table, text):
     table.set_numbers("xyz", names, np.concatenate(frames))
 
 
-def is_mesh(content):
+def is_mesh(content: bytes) -> bool:
     head = content[:2000]
     return head.startswith((b"<?xml", b"<VTKFile")) and b"VTKFile" in head or (
         head.startswith(b"# vtk DataFile") and b"DATASET UNSTRUCTURED_GRID" in head)
 
 
-def parse_mesh(table, content):
+def parse_mesh(table: "Table", content: bytes) -> None:
     """VTK's unstructured grids, legacy or XML, read by meshio: a row is a point with its data."""
     import meshio
 
@@ -153,7 +159,7 @@ def parse_mesh(table, content):
     table.set_numbers("vtk", columns, values)
 
 
-def _with_fields(names, values, fields):
+def _with_fields(names: list[str], values: Floats, fields: Mapping[str, Any]) -> tuple[list[str], Floats]:
     """Columns and their names with those of each field added: of vectors name_x, name_y, name_z, of tensors name_xx, .."""
     for name, field in fields.items():
         field = np.asarray(field, float).reshape(len(values), -1)
@@ -167,9 +173,9 @@ def _with_fields(names, values, fields):
 WIDTHS = {"POINTS": 3, "LINES": 3, "POINT_DATA": 0, "CELL_DATA": 0, "SCALARS": 1, "VECTORS": 3, "TENSORS": 9}  # numbers in a row
 
 
-def _vtk_sections(lines):
+def _vtk_sections(lines: list[str]) -> list[tuple[int, list[str], list[str]]]:
     """Line number, words of the first line and numbers below it, of each section."""
-    sections = []
+    sections = list[tuple[int, list[str], list[str]]]()
     for number, line in enumerate(lines, 1):
         words = line.split()
         if words and number > 3 and words[0][0].isalpha() and words[0].isupper():
@@ -180,22 +186,23 @@ def _vtk_sections(lines):
     return sections
 
 
-def parse_vtk(table, lines):
+def parse_vtk(table: "Table", lines: list[str]) -> None:
     """VTK's legacy format in ASCII with polygonal data, as Yade's VTKExporter writes it, which meshio does not read. A row is a
     point with its data, x y z first; where there are lines, a line with its data, x1 y1 z1 x2 y2 z2 of its two ends first.
     https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html"""
     if "".join(lines[2:3]).strip() != "ASCII":
         _wrong(table, min(3, len(lines)), "the format must be ASCII: write the file as text")
-    first, points, ends, fields, of_points, count = 0, np.zeros((0, 3)), None, {True: {}, False: {}}, True, 0
+    fields: dict[bool, dict[str, Floats]] = {True: {}, False: {}}  # of points, of lines
+    first, points, ends, of_points, count = 0, np.zeros((0, 3)), None, True, 0
     for line, (kind, *words), numbers in _vtk_sections(lines):
         if kind == "DATASET" and words == ["POLYDATA"]:
             continue
         if kind not in WIDTHS or not words:
             _wrong(table, line, f"must be one of {', '.join(WIDTHS)}, of a data set POLYDATA, got " + quoted(" ".join([kind, *words])))
         if kind in ("POINTS", "LINES", "POINT_DATA", "CELL_DATA"):
-            count = _whole(words[0])
-            if count is None:
+            if (said := _whole(words[0])) is None:
                 _wrong(table, line, f"a section must say how many there are, got {quoted(words[0])}")
+            count = said
         wanted = WIDTHS[kind] * count
         if len(numbers) != wanted:
             _wrong(table, line, f"{wanted} numbers must follow, got {len(numbers)}" + ("; truncated?" if len(numbers) < wanted else ""))

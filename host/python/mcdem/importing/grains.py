@@ -1,33 +1,38 @@
 """Grains by frame, complete and ordered by id."""
+from typing import Any
+
 import numpy as np
 
 from ..number_text import shortest
+from ..problems import Problems
+from .arrays import Floats, Ints
 from .mapping import SIZE_KEYS, signed_column
-from .rows import FrameIndex, Rows, whole_entry
+from .plate import PlateRows
+from .rows import FrameIndex, ImportTable, Rows, whole_entry
 
 
 class GrainFrames:
-    def __init__(self):
-        self.keys, self.position = [], []  # of each frame: its key, centres [n][3] [m]
+    def __init__(self) -> None:
+        self.keys, self.position = list[float](), list[Floats]()  # of each frame: its key, centres [n][3] [m]
         self.ids, self.diameter = np.zeros(0, int), np.zeros(0)  # of the first frame; [m]
-        self.where = []  # of each frame, for messages
+        self.where = list[tuple[Rows, int]]()  # of each frame, for messages
         self.origin = np.zeros(3)  # of the box, in the axes of the tables after reversal [m]
         self.sign = np.ones(3)  # -1 for reversed axes of a table
         self.index, self.plate = FrameIndex(), FrameIndex()
-        self.row = None  # row of the plate for each frame; -1: none; None: unknown
+        self.row = list[int]()  # row of the plate for each frame; -1: none; empty: unknown
         self.plate_rows = 0
 
-    def number_of(self, ids):
+    def number_of(self, ids: Any) -> Ints:
         """Indices of grains from their numbers in the table; -1 if there is none."""
         ids = np.asarray(ids)
         at = np.minimum(np.searchsorted(self.ids, ids), max(len(self.ids) - 1, 0))
         return np.where(self.ids[at] == ids, at, -1) if len(self.ids) else np.full(ids.shape, -1)
 
-    def top(self, frame):
+    def top(self, frame: int) -> float:
         """Height of the highest grain [m]."""
         return max(0.0, float(np.max(self.position[frame][:, 2] + self.diameter / 2)))
 
-    def plate_rows_of(self, by, keys):
+    def plate_rows_of(self, by: str, keys: Any) -> Ints:
         """Rows of the plate for the frames of another table, in order; `by` as in frames_by. -1: none."""
         keys = np.asarray(keys, float)
         if by in ("order", "rows"):
@@ -35,27 +40,27 @@ class GrainFrames:
             return np.where((rows >= 0) & (rows < self.plate_rows) & (rows == np.round(rows)), rows, -1).astype(int)
         if by in ("plate", "nearest"):
             return self.plate.find(keys) if by == "plate" else self.plate.nearest(keys)
-        return np.append(self.row if self.row is not None else np.full(len(self.keys), -1), -1)[self.index.find(keys)]
+        return np.append(self.row or np.full(len(self.keys), -1), -1)[self.index.find(keys)]
 
-    def frames_of(self, by, keys):
+    def frames_of(self, by: str, keys: Any) -> Ints:
         """The same for frames of the grains. If the rows of the plate are unknown, frames in order are those of the grains."""
-        if by == "grains" or (by == "plate" and self.row is None):
+        if by == "grains" or (by == "plate" and not self.row):
             return self.index.find(keys)
-        if self.row is None:
+        if not self.row:
             return FrameIndex(range(len(self.keys))).find(range(len(keys)))
         return self.frames_at(self.plate_rows_of(by, keys))
 
-    def frames_at(self, rows):
+    def frames_at(self, rows: Any) -> Ints:
         """The first frame at each of these rows of the plate; -1: none."""
         return np.where(np.asarray(rows) < 0, -1, FrameIndex(self.row).find(rows))
 
-    def place(self, by, plate):
+    def place(self, by: str, plate: PlateRows) -> None:
         """Finds the row of the plate for each frame."""
         self.plate, self.plate_rows = plate.index, len(plate)
         self.row = list(self.plate_rows_of(by, self.keys))
 
 
-def _read_table(table, frames, problems):
+def _read_table(table: ImportTable, frames: GrainFrames, problems: Problems) -> None:
     mapped, rows = table.map, Rows(table, problems)
     size_key = next((key for key in SIZE_KEYS if key in rows), "same_diameter" if "same_diameter" in mapped else "diameter")
     first = whole_entry(mapped, "first_grain", problems)
@@ -85,7 +90,7 @@ def _read_table(table, frames, problems):
             _add_frame(frames, rows, mine[order], of_frame[order], centres[mine[order]], diameter[mine[order]])
 
 
-def _add_frame(frames, rows, mine, ids, centres, diameter):
+def _add_frame(frames: GrainFrames, rows: Rows, mine: Ints, ids: Ints, centres: Floats, diameter: Floats) -> None:
     """The rows `mine` in the order of the ids."""
     key = rows.key[mine[0]]
     shown, twice = shortest(key), np.flatnonzero(np.diff(ids) == 0)
@@ -113,9 +118,11 @@ def _add_frame(frames, rows, mine, ids, centres, diameter):
     frames.position.append(centres)
 
 
-def import_grains(tables, problems):
+def import_grains(tables: list[ImportTable], problems: Problems) -> GrainFrames:
     frames = GrainFrames()
     for table in tables:
         _read_table(table, frames, problems)
+    if tables and not frames.keys and not problems.count:
+        problems.add(tables[0].map.files[0], "must have grains, got 0 in all rows of the column for where: see the mapping")
     frames.index = FrameIndex(frames.keys)
     return frames

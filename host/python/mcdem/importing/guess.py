@@ -1,29 +1,29 @@
 """Guesses the meaning of tables. A guess is sure if a name states it and the numbers do not contradict, or if the numbers allow
 only one possibility; it is unclear if they allow several."""
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ..errors import InputError
 from ..problems import Problems
-from .assemble import import_grains
-from .grains import GrainFrames
+from .grains import GrainFrames, import_grains
 from .guess_contacts import guess_contact_meaning
 from .guess_frames import guess_frames
 from .guess_lengths import guess_grain_lengths, guess_grains_upwards
 from .guess_names import guess_by_names, note_units
 from .guess_plate import guess_plate_units
 from .guess_values import guess_contacts_by_values, guess_grains_by_values, guess_plate_by_values
-from .mapping import UNCLEAR, Guess, MappedTable, columns_of, find_key, unused_columns, must_be_stated, signed_column
+from .mapping import UNCLEAR, Known, MappedTable, columns_of, guess, must_be_stated, signed_column, unused_columns
 from .plate import import_plate
 from .rows import ImportTable, of_role
-from .tables import read_table, read_tables
+from .tables import Table, read_table, read_tables
 
 
-def _group(parts):
+def _group(parts: list[Table]) -> list[ImportTable]:
     """Groups files with the same columns as frames of one table, ordered by the numbers in their names."""
-    groups = {}
+    groups = dict[object, list[Table]]()
     for number, part in enumerate(parts):
         groups.setdefault((tuple(part.columns), part.format, part.form) if part.named else number, []).append(part)
     tables = []
@@ -38,7 +38,7 @@ def _group(parts):
     return tables
 
 
-def _grains_so_far(tables):
+def _grains_so_far(tables: list[ImportTable]) -> GrainFrames:
     """The grains in frames of the plate, read with the present mapping; empty if that is not possible yet."""
     guess_frames(tables)
     of_grains, problems = of_role(tables, "grains"), Problems()
@@ -50,7 +50,7 @@ def _grains_so_far(tables):
     return grains
 
 
-def guess_tables(files, known):
+def guess_tables(files: Sequence[str], known: Known) -> list[ImportTable]:
     tables = _group(read_tables(files))
     for table in tables:
         guess_by_names(table)
@@ -83,17 +83,16 @@ def guess_tables(files, known):
     return tables
 
 
-def mapping_of(tables):
+def mapping_of(tables: list[ImportTable]) -> list[MappedTable]:
     """Marks units and signs without a guess as unclear."""
     for table in tables:
         for key in must_be_stated(table.map):
-            if key not in table.map:
-                words = find_key(table.role, key).words
-                table.map[key] = Guess([words[0] if words else "1"], UNCLEAR, "nothing tells it")
+            if key.name not in table.map:
+                table.map[key.name] = guess(key.words[0] if key.words else "1", UNCLEAR, "nothing tells it")
     return [table.map for table in tables]
 
 
-def wrong_rows(tables):
+def wrong_rows(tables: list[ImportTable]) -> list[str]:
     """Problems in the tables of plate and grains that prevent further guesses, if their columns are known."""
     problems = []
     for table in tables:
@@ -109,10 +108,10 @@ def wrong_rows(tables):
     return problems
 
 
-def _distribute(files, tables, problems):
+def _distribute(files: Sequence[str], tables: list[ImportTable], problems: list[str]) -> None:
     """Assigns each file to the table with most columns, all of which the file has; a tie is a problem."""
     for file in files:
-        fits, why = {}, f"{file}: must have the columns of a table of the mapping, got others"
+        fits, why = dict[int, list[tuple[ImportTable, Table]]](), f"{file}: must have the columns of a table of the mapping, got others"
         for table in tables:
             words = [word for _, words in columns_of(table.map) for word in words]
             try:
@@ -131,10 +130,10 @@ def _distribute(files, tables, problems):
             problems.append(f"{file}: must fit one table of the mapping, got two that it fits: name the files in the mapping" if best else why)
 
 
-def read_import_tables(mapping, files=(), file="mapping"):
+def read_import_tables(mapping: list[MappedTable], files: Sequence[str] = (), file: str = "mapping") -> list[ImportTable]:
     """Reads the files of the tables in a mapping. `files`, if given, replace those of the mapping: each is assigned to the
     table whose columns it has."""
-    tables, problems = [ImportTable(mapped.changed(), []) for mapped in mapping], []
+    tables, problems = [ImportTable(mapped.changed(), []) for mapped in mapping], list[str]()
     if files:
         tables = [table for table in tables if table.role != "unused"]
         before = [table.map.files[0] for table in tables]

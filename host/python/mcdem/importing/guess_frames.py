@@ -4,35 +4,35 @@ from typing import NamedTuple
 import numpy as np
 
 from ..problems import Problems
-from .mapping import UNCLEAR, guess
+from .mapping import UNCLEAR, Guess, guess
 from .names import COUNTED, TIMES, ColumnName, column_name, columns_by_key
-from .rows import FrameIndex, Rows, of_role
+from .rows import FrameIndex, ImportTable, Rows, of_role
 
 
 class _Frames(NamedTuple):
     """The frames of a table, and the meaning of their numbers."""
 
-    keys: list
+    keys: list[float]
     by: str  # as in Rows: place, file, step, column
     counts: str = ""  # "time", "step", "scan"; empty: unknown
     unit: str = ""  # of time, as stated by its name
 
     @property
-    def told_by(self):
+    def told_by(self) -> str:
         told = {"place": "places in a list", "file": "numbers in file names"}.get(self.by)
         return told or f"{self.counts} numbers".strip() + (f" [{self.unit}]" if self.unit else "")
 
     @property
-    def may_count_files(self):
+    def may_count_files(self) -> bool:
         """File names with 0, 1, 2, .. or 1, 2, 3, ..: may number the frames of this table and not those of others."""
         count = len(self.keys)
         return self.by == "file" and self.keys in (list(range(count)), list(range(1, count + 1)))
 
-    def all_among(self, others):
+    def all_among(self, others: "_Frames") -> bool:
         return bool(self.keys) and bool(others.keys) and bool((FrameIndex(others.keys).find(self.keys) >= 0).all())
 
 
-def _frames_of(table):
+def _frames_of(table: ImportTable) -> _Frames:
     rows = Rows(table, Problems())
     if table.role == "plate" and not rows.keyed:
         return _Frames(list(range(len(rows))), "place")
@@ -41,21 +41,21 @@ def _frames_of(table):
     return _Frames([float(rows.key[start]) for start in rows.frames()[:-1]], rows.keyed_by, counts, name.unit + name.unknown)
 
 
-def _choose_frame_column(table, plate):
+def _choose_frame_column(table: ImportTable, plate: ImportTable) -> None:
     """Among several columns for the frame, the one that the plate's table also has."""
     for column in columns_by_key(table.role, table.parts[0].columns).get("frame", ()):
         if column_name(column).base == column_name(plate.map.word("frame")).base:
             table.map["frame"] = guess(column, "sure", "the plate's table has it too")
 
 
-def _same_clock(a, b):
+def _same_clock(a: _Frames, b: _Frames) -> bool:
     """Times must have comparable units: stated ones are converted. Together with seconds, a name may omit the unit."""
     if a.unit and b.unit or a.unit == b.unit:
         return a.unit == b.unit or (a.unit in TIMES and b.unit in TIMES)
     return 2 * len(a.keys) >= len(b.keys) and TIMES.get(a.unit or b.unit) == 1
 
 
-def _by_numbers(word, frames, others):
+def _by_numbers(word: str, frames: _Frames, others: _Frames) -> Guess:
     """Whether frames whose numbers all occur in `others` are the frames with these numbers."""
     alike = frames.counts == others.counts
     if others.by == "place":  # row numbers, if they also start at 0
@@ -68,7 +68,7 @@ def _by_numbers(word, frames, others):
     return guess(word, "sure" if alike and frames.by == others.by != "place" else "likely", f"the table of the {word} has all of them")
 
 
-def _in_order(frames, plate):
+def _in_order(frames: _Frames, plate: _Frames) -> Guess:
     here, rows = len(frames.keys), len(plate.keys)
     if here == rows:
         return guess("order", "likely", f"there are {here} of them, as many as rows of the plate")
@@ -78,7 +78,7 @@ def _in_order(frames, plate):
                  "belong together: put numbers or times of the plate's rows into the files' names or into a column")
 
 
-def _between_rows(frames, plate):
+def _between_rows(frames: _Frames, plate: _Frames) -> Guess | None:
     """A proposal for times between the rows of a plate that was recorded more often; None if they are not."""
     rows = FrameIndex(plate.keys).nearest(frames.keys)
     if (not frames.keys or not frames.counts == plate.counts == "time" or not _same_clock(frames, plate) or len(plate.keys) < 3 * len(frames.keys)
@@ -89,20 +89,20 @@ def _between_rows(frames, plate):
                  "same clock?")
 
 
-def _match(frames, plate, grains):
+def _match(frames: _Frames, plate: _Frames, grains: _Frames | None) -> Guess:
     if grains and frames.by == grains.by == "place" and frames.keys == grains.keys:
         return guess("grains", "likely", "there are as many as of the grains")
     if frames.by == "place":
         return _in_order(frames, plate)
-    like_grains = grains and grains.by != "place" and (grains.by == "file") == (frames.by == "file") and frames.all_among(grains)
-    if like_grains and (len(frames.keys) > 1 or not frames.all_among(plate)):
+    if grains and grains.by != "place" and (grains.by == "file") == (frames.by == "file") and frames.all_among(grains) and (
+            len(frames.keys) > 1 or not frames.all_among(plate)):
         return _by_numbers("grains", frames, grains)
     if frames.all_among(plate):
         return _by_numbers("plate", frames, plate)
     return _between_rows(frames, plate) or _in_order(frames, plate)
 
 
-def guess_frames(tables):
+def guess_frames(tables: list[ImportTable]) -> None:
     plate = next(iter(of_role(tables, "plate")), None)
     if plate is None:
         return

@@ -3,35 +3,36 @@ import numpy as np
 
 from ..number_text import shortest
 from ..problems import Problems
-from .assemble import import_grains
+from .arrays import Floats
+from .grains import GrainFrames, import_grains
 from .guess_names import program_of
-from .mapping import SIZE_KEYS, UNCLEAR, guess
+from .mapping import SIZE_KEYS, UNCLEAR, Guess, Known, MappedTable, guess
 from .names import LENGTHS, DOWNWARDS, VOXEL, column_name
-from .rows import of_role
+from .rows import ImportTable, of_role
 
 
-def plain_grains(table):
+def plain_grains(table: ImportTable) -> GrainFrames:
     """The grains with their raw numbers taken as metres."""
     return import_grains([table.changed(length_unit=guess("m", "stated", ""))], Problems())
 
 
-def _reach(grains):
+def _reach(grains: GrainFrames) -> Floats:
     """The lowest and the highest coordinates in each complete frame [frames][2][3]."""
     radius = grains.diameter[:, None] / 2
     return np.array([[(at - radius).min(axis=0), (at + radius).max(axis=0)] for at in grains.position if len(at) == len(radius)])
 
 
-def fitting_units(factors, value, scale, low, high):
+def fitting_units(factors: dict[str, float], value: float, scale: float, low: float, high: float) -> list[str]:
     """Units for which `value` in that unit over `scale` is between `low` and `high`."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return [unit for unit, factor in factors.items() if low < abs(value) * factor / abs(np.float64(scale)) < high]
 
 
-def length_factors(voxel_size):
+def length_factors(voxel_size: float) -> dict[str, float]:
     return {**LENGTHS, **({VOXEL: voxel_size} if np.isfinite(voxel_size) and voxel_size > 0 else {})}
 
 
-def decide_unit(mapped, key, fits, seen, otherwise, certainty="sure"):
+def decide_unit(mapped: MappedTable, key: str, fits: list[str], seen: str, otherwise: tuple[str, str], certainty: str = "sure") -> None:
     """States the unit that a name tells, or the only one that `fits` the numbers `seen`; `otherwise` a word and the reason why
     it is unclear."""
     named = mapped.get(key)
@@ -47,7 +48,7 @@ def decide_unit(mapped, key, fits, seen, otherwise, certainty="sure"):
         mapped[key] = guess(otherwise[0], UNCLEAR, otherwise[1])
 
 
-def nearest_over_radii(position, diameter):
+def nearest_over_radii(position: Floats, diameter: Floats) -> float:
     """Median over grains of the smallest ratio of the distance to a neighbour to the sum of the radii: about 1 in a
     dense packing."""
     position, diameter = position[:2000], diameter[:2000]
@@ -61,10 +62,10 @@ def nearest_over_radii(position, diameter):
     return float(np.median(ratio.min(axis=1)))
 
 
-def _guess_size(table):
+def _guess_size(table: ImportTable) -> None:
     """Distinguishes radii and diameters: with the wrong one, distances between neighbours are wrong by a factor of two. Proposes
     a diameter if there is no column for the size."""
-    mapped, key = table.map, next((key for key in SIZE_KEYS if key in table.map), None)
+    mapped, key = table.map, next((key for key in SIZE_KEYS if key in table.map), "")
     grains = plain_grains(table if key else table.changed(same_diameter=guess("1", "stated", "")))
     ratio = nearest_over_radii(grains.position[0], grains.diameter) if grains.keys else np.nan
     low, high, other = {"radius": (0.35, 0.6, "diameter"), "diameter": (1.65, 2.6, "radius")}.get(key, (0, 0, ""))
@@ -80,7 +81,7 @@ def _guess_size(table):
         mapped[key].why += f"; neighbours touch ({ratio:.2f} of the sum of radii)"
 
 
-def _guess_unit_by_box(mapped, width, depth, known):
+def _guess_unit_by_box(mapped: MappedTable, width: float, depth: float, known: Known) -> None:
     (box_x, box_y), factors = known.box, length_factors(known.voxel_size)
     likely = "mm" if width > 0.5 else "m"
     if box_x <= 0:
@@ -93,7 +94,7 @@ def _guess_unit_by_box(mapped, width, depth, known):
         decide_unit(mapped, "length_unit", fits, spans, (likely, f"{number} the packing fit the box: {spans}"))
 
 
-def state_voxel_size(mapped, known, width=0):
+def state_voxel_size(mapped: MappedTable, known: Known, width: float = 0) -> None:
     """Voxel size of a table in voxels: as stated, otherwise the one with which a packing of this `width` fills the box."""
     if mapped.word("length_unit") != VOXEL:
         return
@@ -105,7 +106,7 @@ def state_voxel_size(mapped, known, width=0):
                                      + (f"; with this one the packing, {width:.4g} voxels wide, fills the box" if fills else ""))
 
 
-def _guess_origin(mapped, low, high, grains, box):
+def _guess_origin(mapped: MappedTable, low: Floats, high: Floats, grains: GrainFrames, box: tuple[float, float]) -> None:
     unit, margin = mapped.length_factor(), 0.12 * grains.diameter[0]  # soft grains overlap walls
     for axis, size in enumerate([*np.divide(box, unit), np.inf] if box[0] > 0 else ()):
         begin, end = low[axis], high[axis]
@@ -120,17 +121,18 @@ def _guess_origin(mapped, low, high, grains, box):
         mapped["origin_" + "xyz"[axis]] = guess(f"{grains.sign[axis] * word + 0:.6g}", certainty, why)
 
 
-def guess_grain_lengths(table, known):
+def guess_grain_lengths(table: ImportTable, known: Known) -> None:
     mapped, grains = table.map, plain_grains(table)
     if not grains.keys:
         return
     low, high = _reach(grains)[0]
-    _guess_unit_by_box(mapped, *(high - low)[:2], known)
-    state_voxel_size(mapped, known, (high - low)[0])
+    width, depth, _ = high - low
+    _guess_unit_by_box(mapped, width, depth, known)
+    state_voxel_size(mapped, known, width)
     _guess_origin(mapped, low, high, grains, known.box)
 
 
-def _end_that_moves(ends, diameter):
+def _end_that_moves(ends: Floats, diameter: float) -> str:
     """The end that moves towards the other one between the highest and the lowest frame; it is the one with the plate."""
     heights = ends[:, 1] - ends[:, 0]
     compression = np.ptp(heights)
@@ -140,7 +142,7 @@ def _end_that_moves(ends, diameter):
     return "lower" if at_low > 0.8 else "upper" if at_low < 0.2 else "both"
 
 
-def _upwards(now, ends, diameter):
+def _upwards(now: Guess, ends: Floats, diameter: float) -> Guess:
     """The entry for z, not reversed so far, with its direction from the ends of the packing and the column's name."""
     end, margin, (low, high) = _end_that_moves(ends, diameter), 0.12 * diameter, ends[0]
     down, reach = "-" + now.word, f"grains reach from {low:.4g} to {high:.4g}"
@@ -158,7 +160,7 @@ def _upwards(now, ends, diameter):
     return next(guess(*rule) for applies, *rule in rules if applies)
 
 
-def guess_grains_upwards(tables):
+def guess_grains_upwards(tables: list[ImportTable]) -> None:
     """Reverses z if that is certain; marks it as unclear if it is possible."""
     single = []  # z of the tables of one frame, which do not tell its direction
     for table in of_role(tables, "grains"):

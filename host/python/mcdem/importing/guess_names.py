@@ -1,15 +1,17 @@
 """Guesses role and columns of a table from the names of its columns, with their units."""
 import re
+from collections.abc import Sequence
 
-from .mapping import SIZE_KEYS, UNCLEAR, Guess, guess, signed_column
+from .mapping import SIZE_KEYS, UNCLEAR, Guess, MappedTable, guess, signed_column
 from .names import COUNTED, FORCES, LENGTH_WORDS, VOXEL, column_name, columns_by_key, other_quantity
+from .rows import ImportTable
 
 LENGTH_KEYS = ("x", "y", "z", *SIZE_KEYS, "plate_z", "displacement")
 FORCE_KEYS = ("fx", "fy", "fz", "force", "top_force", "set_force")
 PROGRAMS = {"SPAM": {"Label", "Zpos", "Ypos", "Xpos"}, "trackpy": {"mass", "signal"}, "scikit-image": {"centroid-2"}}
 
 
-def _role_of(columns):
+def _role_of(columns: list[str]) -> tuple[str, str, str]:
     """Role, certainty and reason."""
     contacts, grains, plate = (columns_by_key(role, columns).keys() for role in ("contacts", "grains", "plate"))
     bases, pairs = [column_name(column).base for column in columns], {"grain", "partner"} <= contacts
@@ -24,12 +26,12 @@ def _role_of(columns):
     return "unused", UNCLEAR, "its columns say nothing that is known"
 
 
-def program_of(columns):
+def program_of(columns: list[str]) -> str:
     """The image analysis program that names columns so, empty if there is none."""
     return next((program for program, names in PROGRAMS.items() if names <= set(columns)), "")
 
 
-def _note_unit(mapped, key, keys, known):
+def _note_unit(mapped: MappedTable, key: str, keys: Sequence[str], known: Sequence[str]) -> None:
     """The unit in the names of these columns, if they agree and it is known."""
     names = [column_name(signed_column(word)[1]) for entry in keys if entry in mapped for word in mapped[entry].words]
     units = sorted({name.unit + name.unknown for name in names} - {""}, key=lambda unit: (unit in known, unit))
@@ -45,12 +47,12 @@ def _note_unit(mapped, key, keys, known):
         mapped[key] = guess(units[0], UNCLEAR, "the columns' names say different units, and a table has one: change the table")
 
 
-def note_units(mapped):
+def note_units(mapped: MappedTable) -> None:
     _note_unit(mapped, "length_unit", LENGTH_KEYS, LENGTH_WORDS)
     _note_unit(mapped, "force_unit", FORCE_KEYS, list(FORCES))
 
 
-def _note_programs(mapped, columns):
+def _note_programs(mapped: MappedTable, columns: list[str]) -> None:
     """Columns of image analysis programs."""
     program = program_of(columns)
     if program == "SPAM":
@@ -61,7 +63,7 @@ def _note_programs(mapped, columns):
         mapped.entries.setdefault("length_unit", guess(VOXEL, "likely", f"{program} counts in voxels"))
 
 
-def guess_by_names(table):
+def guess_by_names(table: ImportTable) -> None:
     mapped, columns, repeated = table.map, table.parts[0].columns, table.parts[0].repeated
     mapped.role, mapped.role_certainty, mapped.role_why = _role_of(columns)
     if (role := mapped.role) == "unused":

@@ -2,41 +2,43 @@
 import numpy as np
 
 from ..problems import Problems
+from .arrays import Floats
 from .contacts import import_contacts, wall_partner
+from .grains import GrainFrames
 from .guess_contacts import ROUGH, decide_force_unit, hertz_force
 from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
-from .mapping import UNCLEAR, guess, signed_column
+from .mapping import UNCLEAR, Known, MappedTable, guess, signed_column
 from .names import LENGTHS
-from .plate import import_plate
-from .rows import of_role
+from .plate import PlateRows, import_plate
+from .rows import ImportTable, of_role
 
 
 class _Plate:
     """The plate's rows, their raw numbers taken as m and N, and those of frames of the grains."""
 
-    def __init__(self, table, start, grains):
+    def __init__(self, table: ImportTable, start: float, grains: GrainFrames) -> None:
         plain = {key: guess(word, "stated", "") for key, word in (("length_unit", "m"), ("force_unit", "N"), ("force_sign", "+"))}
         self.rows = rows = import_plate(table.changed(**plain), start if np.isfinite(start) else 0.0, Problems())
         self.grains = grains
-        row = rows.index.find(grains.keys) if grains.row is None else np.array(grains.row, int)
+        row = rows.index.find(grains.keys) if not grains.row else np.array(grains.row, int)
         # Frames refer to the first table of the plate; a second one may be shorter.
         self.frames = np.flatnonzero((row >= 0) & (row < len(rows)))
         self.row = row[self.frames]
         self.z, self.force = rows.z[self.row], np.abs(rows.force[self.row])
 
-    def force_ratio(self, expected):
+    def force_ratio(self, expected: Floats) -> float:
         """Median over the loaded frames of the ratio of the table's force to the expected one of each of `frames`."""
         loaded = (self.force > 0.2 * np.fmax.reduce(np.abs(self.rows.force))) & (expected > 0)
         return float(np.median(self.force[loaded] / expected[loaded])) if loaded.any() else np.nan
 
 
-def _pulls_and_pushes(force):
+def _pulls_and_pushes(force: Floats) -> bool:
     """Whether forces of both signs are more than an error of the zero: a plate that sticks is pulled on its way back."""
     low, high = force.min(initial=0), force.max(initial=0)
-    return min(-low, high) > 0.1 * max(-low, high)
+    return bool(min(-low, high) > 0.1 * max(-low, high))
 
 
-def _first_way(z, force):
+def _first_way(z: Floats, force: Floats) -> int:
     """The direction of the first move that loads a plate which begins without a force: -1 down, 1 up; 0 if it begins under force."""
     size = np.abs(force)
     moved = np.flatnonzero(np.abs(z - z[0]) > 0.2 * np.ptp(z))
@@ -45,7 +47,7 @@ def _first_way(z, force):
     return int(np.sign(z[moved[0]] - z[0]))
 
 
-def _guess_downwards(mapped, rows):
+def _guess_downwards(mapped: MappedTable, rows: PlateRows) -> None:
     """Guesses the direction: the force increases while the plate moves down. Its size alone does not tell it of a plate that sticks:
     where sizes, signs and the first move disagree, the direction must be confirmed."""
     place, known = "displacement" if "displacement" in mapped else "plate_z", np.isfinite(rows.z + rows.force)
@@ -64,11 +66,11 @@ def _guess_downwards(mapped, rows):
     else:
         reverse = first > 0 or (first == 0 and z[0] > (z.min() + z.max()) / 2)
         way = "first moves " + ("up" if first > 0 else "down") if first else "begins under force"
-        mapped[place] = guess("-" + word if reverse else word, UNCLEAR, f"{ends}, where the plate {way}, and a plate that sticks is pulled on its way "
-                              "back: does the column count upwards? Then write a - before its name, otherwise none")
+        mapped[place] = guess("-" + word if reverse else word, UNCLEAR, f"{ends}, where the plate {way}, and a plate that sticks is pulled on "
+                              "its way back: does the column count upwards? Then write a - before its name, otherwise none")
 
 
-def _guess_origin(mapped, plate, factors, unit_of_grains):
+def _guess_origin(mapped: MappedTable, plate: _Plate, factors: dict[str, float], unit_of_grains: str) -> None:
     """The origin of a plate below 0 is not the floor; that of a downward column that does not touch the grains at its
     lowest position may be elsewhere as well."""
     if "plate_z" not in mapped or not np.isfinite(plate.rows.z).any():
@@ -84,13 +86,13 @@ def _guess_origin(mapped, plate, factors, unit_of_grains):
                                f"counted from 0 the plate would be at {height:.4g} at the lowest: where is the floor, as {column} counts?")
 
 
-def _units_above_floor(rows, start):
+def _units_above_floor(rows: PlateRows, start: float) -> list[str]:
     """Units in which displacements leave the plate above the floor, the largest first."""
     down = start - np.nanmin(rows.z) if np.isfinite(rows.z).any() else np.nan
     return [unit for unit, factor in sorted(LENGTHS.items(), key=lambda unit: -unit[1]) if 0 < down * factor < start]
 
 
-def _guess_height(mapped, plate, start, factors):
+def _guess_height(mapped: MappedTable, plate: _Plate, start: float, factors: dict[str, float]) -> None:
     """The unit in which the plate touches the grains at its lowest position."""
     grains, fits, seen = plate.grains, [], ""
     goes_down = "displacement" in mapped
@@ -114,7 +116,7 @@ def _guess_height(mapped, plate, start, factors):
         decide_unit(mapped, "length_unit", fits, seen, (fits[0] if fits else likely, seen or f"no name says it, and {unknown}"))
 
 
-def _contact_forces(tables, grains):
+def _contact_forces(tables: list[ImportTable], grains: GrainFrames) -> Floats:
     """Force of the grains on the plate in each of their frames, from their contacts with it; NaN if none is listed."""
     sums, counts = np.zeros(len(grains.keys)), np.zeros(len(grains.keys))
     for table in of_role(tables, "contacts"):
@@ -127,7 +129,7 @@ def _contact_forces(tables, grains):
     return np.where(counts > 0, sums, np.nan)
 
 
-def _sign_at_the_lowest(rows):
+def _sign_at_the_lowest(rows: PlateRows) -> str:
     """The sign of the force where the plate is lowest, and the grains push; empty if there is none."""
     known = np.isfinite(rows.z + rows.force)
     z, force = rows.z[known], rows.force[known]
@@ -135,7 +137,7 @@ def _sign_at_the_lowest(rows):
     return "-" if low < 0 else "+" if low > 0 else ""
 
 
-def _guess_force(table, others, plate, known):
+def _guess_force(table: ImportTable, others: list[ImportTable], plate: _Plate, known: Known) -> None:
     mapped, force = table.map, plate.rows.force[np.isfinite(plate.rows.force)]
     low, high = force.min(initial=np.inf), force.max(initial=-np.inf)
     larger, deep = "-" if abs(low) > abs(high) else "+", _sign_at_the_lowest(plate.rows)
@@ -158,7 +160,7 @@ def _guess_force(table, others, plate, known):
                       "no name says it, and nothing is known to compare with")
 
 
-def guess_plate_units(table, tables, grains, known):
+def guess_plate_units(table: ImportTable, tables: list[ImportTable], grains: GrainFrames, known: Known) -> None:
     mapped = table.map
     if "top_force" not in mapped or ("plate_z" not in mapped and "displacement" not in mapped):
         return

@@ -1,40 +1,46 @@
 """Guesses columns without meaningful names from their numbers."""
+from collections.abc import Sequence
+
 import numpy as np
 
+from .arrays import Bools, Floats, Ints
+from .grains import GrainFrames
 from .guess_lengths import nearest_over_radii
-from .mapping import UNCLEAR, guess
-from .names import WORDS, column_name, columns_by_key, other_quantity
+from .mapping import UNCLEAR, MappedTable, guess
+from .names import column_name, columns_by_key, other_quantity
+from .rows import ImportTable
+from .tables import Table
 
 MAX_ROWS, MAX_COLUMNS = 20_000, 50  # maximum size used for guesses
 
 
-def _numbers_of(part):
+def _numbers_of(part: Table) -> tuple[Floats, Bools]:
     """The numbers [rows][columns], and which columns are whole numbers."""
     numbers = np.column_stack([part.numbers(c)[:MAX_ROWS] for c in range(min(len(part.columns), MAX_COLUMNS))])
     return numbers, np.all((numbers == np.round(numbers)) & (np.abs(numbers) < 2e9), axis=0)
 
 
-def _has_numbers(numbers):
+def _has_numbers(numbers: Floats) -> Bools:
     """Whether most cells of each column are numbers, because a table may have gaps."""
-    return 2 * np.isfinite(numbers).sum(axis=0) > len(numbers)
+    return np.asarray(2 * np.isfinite(numbers).sum(axis=0) > len(numbers))
 
 
-def _named(role, columns):
+def _named(role: str, columns: list[str]) -> list[str]:
     """The key that its name tells for each of the columns, "" where it tells none. A repeated name tells none."""
     keys = {names[0]: key for key, names in columns_by_key(role, columns).items() if len(names) == 1}
     return [keys.get(column, "") for column in columns]
 
 
-def _agrees(named, place, keys):
+def _agrees(named: list[str], place: int, keys: Sequence[str]) -> bool:
     """Whether no name contradicts that the columns from `place` on are the `keys`: neither their own ones nor those of others."""
     return all(name in ("", key) and (name or key not in named) for name, key in zip(named[place:], keys))
 
 
-def _note_named(mapped, named, columns, keys):
+def _note_named(mapped: MappedTable, named: list[str], columns: list[str], keys: Sequence[str]) -> None:
     mapped.entries.update({key: guess(name, "sure", "its name") for key, name in zip(named, columns) if key in keys})
 
 
-def _guess_named_centres(table, numbers, whole, rows):
+def _guess_named_centres(table: ImportTable, numbers: Floats, whole: Bools, rows: int) -> None:
     """x, y and z by their names; the size among the columns without a meaning, confirmed by the user: the distances to neighbours
     tell how far it is from a radius and a diameter."""
     part, mapped = table.parts[0], table.map
@@ -52,11 +58,11 @@ def _guess_named_centres(table, numbers, whole, rows):
     if found:
         _, key, ratio, c = min(found)
         mapped.role_certainty = "likely"
-        mapped[key] = guess(part.columns[c], UNCLEAR, f"no name says it, and the nearest neighbours are {ratio:.3g} times its numbers apart (diameters: "
-                            "about 1, radii: 2): is it the size? Where no column has it, write same_diameter in its place")
+        mapped[key] = guess(part.columns[c], UNCLEAR, f"no name says it, and the nearest neighbours are {ratio:.3g} times its numbers apart "
+                            "(diameters: about 1, radii: 2): is it the size? Where no column has it, write same_diameter in its place")
 
 
-def guess_grains_by_values(table):
+def guess_grains_by_values(table: ImportTable) -> None:
     """Four columns that give touching spheres. Names beat geometry: a column that is named otherwise is none of them, and columns
     named x, y and z are the centres."""
     part, mapped = table.parts[0], table.map
@@ -96,7 +102,7 @@ def guess_grains_by_values(table):
             return
 
 
-def _touching_pairs(part, pairs, grains):
+def _touching_pairs(part: Table, pairs: Floats, grains: GrainFrames) -> tuple[Ints, Floats]:
     """Rows and unit vectors from partner to grain, if nearly all pairs in two columns touch; otherwise none."""
     frame = np.zeros(len(pairs), int)
     if part.frames:
@@ -115,19 +121,19 @@ def _touching_pairs(part, pairs, grains):
         return known[touch], (line[touch] / length[touch, None]) * grains.sign
 
 
-def _alignment(force, away):
+def _alignment(force: Floats, away: Floats) -> float:
     """Measure for forces along the lines of centres: the median of |cos| of the angle between them."""
     size = np.linalg.norm(force, axis=1)
     cosines = np.abs(np.sum(force * away, axis=1))[size > 0] / size[size > 0]
     return float(np.median(cosines)) if len(cosines) >= 3 else 0.0
 
 
-def guess_contacts_by_values(table, grains):
+def guess_contacts_by_values(table: ImportTable, grains: GrainFrames) -> None:
     """Two columns with numbers of touching grains, and forces along the lines of centres; none that are named otherwise."""
     part, mapped = table.parts[0], table.map
     numbers, whole = _numbers_of(part)
     named = _named("contacts", part.columns)[:len(whole)]
-    for a in np.flatnonzero(whole[:-1] & whole[1:]) if grains.keys else ():
+    for a in np.flatnonzero(whole[:-1] & whole[1:]).tolist() if grains.keys else ():
         if not _agrees(named, a, ("grain", "partner")):
             continue
         rows, away = _touching_pairs(part, numbers[:, a:a + 2], grains)
@@ -135,7 +141,7 @@ def guess_contacts_by_values(table, grains):
             continue
         fits = {c: _alignment(numbers[rows, c:c + 3], away) for c in range(len(whole) - 2)
                 if (c > a + 1 or c + 2 < a) and _agrees(named, c, ("fx", "fy", "fz"))}
-        best = max(fits, key=fits.get, default=0)
+        best = max(fits, key=lambda c: fits[c], default=0)
         most, good = fits.get(best, 0), sum(fit > 0.9 for fit in fits.values())
         others = np.delete(_has_numbers(numbers) & ~whole, slice(best, best + 3)).sum()
         seen = f"one of {good} triples of columns that point" if good > 1 else \
@@ -149,7 +155,7 @@ def guess_contacts_by_values(table, grains):
         return
 
 
-def guess_plate_by_values(table):
+def guess_plate_by_values(table: ImportTable) -> None:
     """A few columns without names. Where a name says what a column is, the others are not guessed: a pressure is no force."""
     part, mapped = table.parts[0], table.map
     named = {key: names for key, names in columns_by_key("plate", part.columns).items() if key in ("plate_z", "displacement", "top_force")}
@@ -163,7 +169,7 @@ def guess_plate_by_values(table):
         mapped.entries.update({key: guess(names[0], UNCLEAR, "its name") for key, names in named.items()})
     elif len(numeric) >= 2 and len(part.columns) <= 8:
         mapped.role_why = "no names, no grains"
-        if len(numeric) > 2 and not (np.diff(part.numbers(part.find(numeric[0]))) <= 0).any():
+        if len(numeric) > 2 and not (np.diff(part.numbers(part.columns.index(numeric[0]))) <= 0).any():
             mapped["frame"] = guess(numeric.pop(0), UNCLEAR, "rises from row to row")
         forces = sorted(numeric[1:], key=lambda name: column_name(name).quantity != "a force")  # a name beats the place
         for key, name, quantity in zip(("plate_z", "top_force"), [numeric[0], *forces], ("length", "force")):

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 
 from ..errors import InputError
 from ..look import is_there
-from .assemble import Imported, Known, import_tables
+from .assemble import Imported, import_tables
 from .guess import guess_tables, mapping_of, read_import_tables, wrong_rows
-from .mapping import KEYS, MappedTable, mapping_text, unclear_entries
+from .mapping import KEYS, Known, MappedTable, mapping_text, unclear_entries
 from .read_mapping import parse_mapping, text_of_mapping
 from .rows import ImportTable
 

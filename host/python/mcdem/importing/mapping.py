@@ -1,5 +1,7 @@
 """The mapping of table columns: guessed, and written as mapping.toml for the user to correct (read_mapping reads it)."""
+import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -14,25 +16,38 @@ UNCLEAR = "unclear"  # in addition to stated, sure, likely: must be confirmed in
 
 
 @dataclass
+class Known:
+    """Values that are not in the tables, including the scale that distinguishes millimetres from metres."""
+
+    box: tuple[float, float] = (0.0, 0.0)  # [m]; 0: unknown
+    shape: str = "box"  # or cylinder, periodic
+    plate_start: float = math.nan
+    youngs_modulus: float = math.nan  # of the grains [Pa]
+    poisson_ratio: float = 0.4
+    voxel_size: float = math.nan  # [m]
+    programme: bool = False  # rows have times
+
+
+@dataclass
 class Guess:
-    words: list  # a word, or columns: "-z" if z is reversed
+    words: list[str]  # a word, or columns: "-z" if z is reversed
     certainty: str = "stated"
     why: str = ""
 
     @property
-    def word(self):
+    def word(self) -> str:
         return self.words[0]
 
 
-def guess(word, certainty, why):
+def guess(word: str, certainty: str, why: str) -> Guess:
     return Guess([word], certainty, why)
 
 
-def signed_column(word):
+def signed_column(word: str) -> tuple[int, str]:
     return (-1, word[1:]) if word.startswith("-") else (1, word)
 
 
-def negated(of):
+def negated(of: Guess) -> Guess:
     """The entry with all columns reversed."""
     return Guess([word[1:] if word.startswith("-") else "-" + word for word in of.words], of.certainty, of.why)
 
@@ -41,17 +56,17 @@ class Key(NamedTuple):
     name: str
     kind: str  # column, quantity (may have a sign), quantities (a sum of several), word, number
     meaning: str = ""
-    words: tuple = ()
+    words: tuple[str, ...] = ()
 
 
-def _length_keys(meaning=""):
+def _length_keys(meaning: str = "") -> list[Key]:
     return [Key("length_unit", "word", meaning, tuple(LENGTH_WORDS)),
             Key("voxel_size", "number", "edge of a voxel [m], where length_unit is voxel")]
 
 
-_FRAMES_BY = ("plate: frames have the plate's numbers, times or steps; nearest: the row with the nearest time; order: the first is the plate's first row, and so on; rows: "
-              "they are the plate's rows, counted from 0")
-KEYS = {
+_FRAMES_BY = ("plate: frames have the plate's numbers, times or steps; nearest: the row with the nearest time; order: the first is the "
+              "plate's first row, and so on; rows: they are the plate's rows, counted from 0")
+KEYS: dict[str, list[Key]] = {
     "plate": [
         Key("frame", "column", "a row's frame number, time or step; without it the rows count"),
         Key("cycle", "column", "compression cycle, rising; without it from the plate's turns"),
@@ -110,7 +125,7 @@ SIZE_KEYS = ("diameter", "radius", "volume")
 COLUMN_KINDS = ("column", "quantity", "quantities")
 
 
-def find_key(role, name):
+def find_key(role: str, name: str) -> Key | None:
     return next((key for key in KEYS[role] if key.name == name), None)
 
 
@@ -120,56 +135,56 @@ class MappedTable:
     role_certainty: str = "stated"
     role_why: str = ""
     line: int = 0  # in the mapping
-    files: list = field(default_factory=list)  # with the same columns, in order of the frames
-    unused: list = field(default_factory=list)  # unused columns
-    form: Form = None  # of text
+    files: list[str] = field(default_factory=list)  # with the same columns, in order of the frames
+    unused: list[str] = field(default_factory=list)  # unused columns
+    form: Form | None = None  # of text
     decimal_unclear: str = ""  # reason; empty if it is clear
-    entries: dict = field(default_factory=dict)
-    walls: dict = field(default_factory=dict)  # of contacts: from the table's name of a wall to the standard name
+    entries: dict[str, Guess] = field(default_factory=dict)
+    walls: dict[str, Guess] = field(default_factory=dict)  # of contacts: from the table's name of a wall to the standard name
 
-    def __contains__(self, key):
+    def __contains__(self, key: str) -> bool:
         return key in self.entries
 
-    def __getitem__(self, key):
+    def __getitem__(self, key: str) -> Guess:
         return self.entries[key]
 
-    def __setitem__(self, key, value):
+    def __setitem__(self, key: str, value: Guess) -> None:
         self.entries[key] = value
 
-    def get(self, key):
+    def get(self, key: str) -> Guess | None:
         return self.entries.get(key)
 
-    def word(self, key, otherwise=""):
+    def word(self, key: str, otherwise: str = "") -> str:
         return self.entries[key].word if key in self.entries else otherwise
 
-    def number(self, key):
+    def number(self, key: str) -> float:
         return to_number(self.word(key, "0")) or 0.0
 
-    def length_factor(self, otherwise="m"):
+    def length_factor(self, otherwise: str = "m") -> float:
         """Length of the table's unit in metres."""
         unit = self.word("length_unit", otherwise)
         return self.number("voxel_size") if unit == VOXEL else LENGTHS[unit]
 
-    def force_factor(self):
+    def force_factor(self) -> float:
         return FORCES[self.word("force_unit", "N")]
 
-    def changed(self, **entries):
+    def changed(self, **entries: Guess) -> "MappedTable":
         """A copy with other entries."""
         return replace(self, entries={**self.entries, **entries}, walls=dict(self.walls))
 
 
-def must_be_stated(table):
+def must_be_stated(table: MappedTable) -> list[Key]:
     """Units and signs that are required for the table's columns."""
-    keys = table.entries.keys()
+    keys, all_of = table.entries.keys(), {key.name: key for key in KEYS[table.role]}
     needed = {"length_unit": keys & {"plate_z", "displacement", "x", "y", "z", *SIZE_KEYS, "same_diameter"},
               "voxel_size": table.word("length_unit") == VOXEL,
               "force_unit": keys & {"top_force", "force", "fx", "fy", "fz"},
               "force_sign": table.role == "plate" and "top_force" in keys,
               "force_on": table.role == "contacts" and keys & {"fx", "fy", "fz"}}
-    return [key for key, is_needed in needed.items() if is_needed]
+    return [all_of[name] for name, is_needed in needed.items() if is_needed]
 
 
-def columns_of(table):
+def columns_of(table: MappedTable) -> Iterator[tuple[str, list[str]]]:
     """Key and words of every entry that names columns."""
     for key in KEYS[table.role]:
         words = table[key.name].words if key.name in table and key.kind in COLUMN_KINDS else []
@@ -177,7 +192,7 @@ def columns_of(table):
             yield key.name, words
 
 
-def unused_columns(table, columns):
+def unused_columns(table: MappedTable, columns: list[str]) -> list[str]:
     used = {signed_column(word)[1] for entry in table.entries.values() for word in entry.words}
     return [column for column in columns if column not in used]
 
@@ -189,11 +204,11 @@ INTRODUCTION = """\
 """
 
 
-def _one_line(text):
+def _one_line(text: str) -> str:
     return re.sub(r"[\x00-\x1f\x7f]", " ", text)
 
 
-def _line_text(key, of, meaning):
+def _line_text(key: str, of: Guess, meaning: str) -> str:
     mark = "?" if of.certainty == UNCLEAR else ""
     words = [mark + of.word, *of.words[1:]]
     text = f"{key} = {toml_value(words[0] if len(words) == 1 else words)}"
@@ -202,11 +217,11 @@ def _line_text(key, of, meaning):
     return text + "\n"
 
 
-def meaning_of(key):
+def meaning_of(key: Key) -> str:
     return "; ".join(filter(None, ["one of " + ", ".join(key.words) if key.words else "", key.meaning]))
 
 
-def _table_text(table):
+def _table_text(table: MappedTable) -> str:
     text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_certainty, table.role_why), "one of " + ", ".join(KEYS))
     text += f"files = {toml_value(table.files)}\n"
     if table.form:
@@ -226,12 +241,12 @@ def _table_text(table):
     return text
 
 
-def mapping_text(tables):
+def mapping_text(tables: list[MappedTable]) -> str:
     """Each guess with its certainty and reason; unclear ones begin with a question mark."""
     return INTRODUCTION + "".join(map(_table_text, tables))
 
 
-def unclear_entries(text, file):
+def unclear_entries(text: str, file: str) -> list[str]:
     """The lines that must be confirmed, each as a problem with the possible values."""
     lines = [re.fullmatch(f"([^#].*?) = (.*)  # {UNCLEAR}: (.*)", line) for line in text.split("\n")]
     return [f"{file}:{number}: {line[1]} must be confirmed, got {line[2]}: {line[3]}" for number, line in enumerate(lines, 1) if line]

@@ -1,5 +1,6 @@
 """Meaning of column names: a quantity and possibly a unit, in the terms of laboratories and programs."""
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import pint
@@ -7,7 +8,7 @@ import pint
 _units = pint.UnitRegistry()
 
 
-def _factors(words, base):
+def _factors(words: str, base: str) -> dict[str, float]:
     return {word: _units.Quantity(1, word).to(base).magnitude for word in words.split()}
 
 
@@ -27,6 +28,13 @@ DOWNWARDS = "depth tiefe profondeur zdown zdownwards"  # names of a downward z
 COUNTED = {"time": "time t zeit temps", "step": "step timestep schritt iter", "scan": "frame scan image snapshot bild state"}
 _FRAME = ("frame", " ".join(COUNTED.values()))
 
+
+
+def _of_axes(key: str, names: str, more: Sequence[str]) -> list[tuple[str, str]]:
+    """The key and its names for x, y and z, which stand in place of @; `more`: names of each."""
+    return [(key.replace("@", axis), f"{names.replace('@', axis)} {others}") for axis, others in zip("xyz", more, strict=True)]
+
+
 # Keys of the mapping and their names without units and punctuation; the first match is used.
 WORDS = {
     "plate": [
@@ -45,11 +53,10 @@ WORDS = {
     "grains": [
         _FRAME,
         ("grain", "grain id particle label index korn teilchen nr no number atom particleid grainid bead beadid"),
-        ("x", "x xc cx posx xpos centroidx xcentroid centerx xcenter centrex xcentre coordx xcoord comx xcom xu px positionx centroid2 barycenterx centerofmassx"),
-        ("y", "y yc cy posy ypos centroidy ycentroid centery ycenter centrey ycentre coordy ycoord comy ycom yu py positiony centroid1 barycentery centerofmassy"),
-        ("z", "z zc cz posz zpos centroidz zcentroid centerz zcenter centrez zcentre coordz zcoord comz zcom zu pz positionz centroid0 barycenterz centerofmassz "
-              + DOWNWARDS),
-        ("diameter", "diameter d dia diam durchmesser diametre equivalentdiameterarea equivalentdiameter eqdiameter equivdiam equivalentsphericaldiameter"),
+        *_of_axes("@", "@ @c c@ pos@ @pos centroid@ @centroid center@ @center centre@ @centre coord@ @coord com@ @com @u p@ position@ "
+                       "barycenter@ centerofmass@", ("centroid2", "centroid1", f"centroid0 {DOWNWARDS}")),  # axes of an image: z, y, x
+        ("diameter", "diameter d dia diam durchmesser diametre equivalentdiameterarea equivalentdiameter eqdiameter equivdiam "
+                     "equivalentsphericaldiameter"),
         ("radius", "radius r rad radii halbmesser rayon equivalentradius equivalentradii equivradius equivradii eqradius"),
         ("volume", "volume volume3d volumen vol"),
     ],
@@ -59,12 +66,8 @@ WORDS = {
                   "labeli"),
         ("partner", "partner id2 j grain2 particle2 particlej p2 b grainb idj korn2 teilchen2 atom2 patom2 idb part2 g2 i2 "
                     "neighbour neighbor nachbar other contactwith label2 lab2 labelj"),
-        ("x", "x xc cx px contactx xcontact cpx pointx xpos"),
-        ("y", "y yc cy py contacty ycontact cpy pointy ypos"),
-        ("z", "z zc cz pz contactz zcontact cpz pointz zpos " + DOWNWARDS),
-        ("fx", "fx forcex xforce f1 kraftx ffx fcx"),
-        ("fy", "fy forcey yforce f2 krafty ffy fcy"),
-        ("fz", "fz forcez zforce f3 kraftz ffz fcz"),
+        *_of_axes("@", "@ @c c@ p@ contact@ @contact cp@ point@ @pos", ("", "", DOWNWARDS)),
+        *_of_axes("f@", "f@ force@ @force kraft@ ff@ fc@", ("f1", "f2", "f3")),
         ("force", "force f forcemagnitude fn normalforce kraft fabs fmag forcenorm"),
     ],
 }
@@ -77,7 +80,7 @@ class ColumnName(NamedTuple):
     unknown: str = ""  # a unit in brackets of another quantity, or of an unknown one; without brackets of a pressure or a fraction
 
     @property
-    def quantity(self):
+    def quantity(self) -> str:
         """What the name says that the column has: a length, a force, a time, a pressure or a fraction; empty if it says nothing."""
         of_units = {"a length": self.unit in LENGTH_WORDS, "a force": self.unit in FORCES, "a time": self.unit in TIMES,
                     "a pressure": _is_pressure(self.unknown) or not (self.unit or self.unknown) and self.base in PRESSURE_NAMES.split(),
@@ -85,20 +88,22 @@ class ColumnName(NamedTuple):
         return next((quantity for quantity, is_so in of_units.items() if is_so), "")
 
 
-def _known_unit(word):
+def _known_unit(word: str) -> str:
     """Lengths also cubed, as volumes have them: "mm^3", "mm3"."""
     word = re.sub(r"(\^?3|³)$", "", word)
     word = SYNONYMS.get(word, SYNONYMS.get(word.lower(), word))
     return word if word in LENGTH_WORDS or word in FORCES or word in TIMES else ""
 
 
-def _is_pressure(word):
+def _is_pressure(word: str) -> bool:
     """"kPa", "N/mm2", "kgf/cm^2"."""
     force, _, area = word.partition("/")
-    return word in PRESSURES or (len(word) > 2 and word in {known.lower() for known in PRESSURES}) or _known_unit(force) in FORCES and re.fullmatch(r"[mcd]?m(\^?2|²)", area) is not None
+    if word in PRESSURES or len(word) > 2 and word in {known.lower() for known in PRESSURES}:
+        return True
+    return _known_unit(force) in FORCES and re.fullmatch(r"[mcd]?m(\^?2|²)", area) is not None
 
 
-def column_name(name):
+def column_name(name: str) -> ColumnName:
     """"Kraft [mN]", "x_mm", "Volume (mm^3)" and "z in mm" name units, "c_force[1]" does not."""
     name, unit, unknown = name.strip(), "", ""
     brackets = re.fullmatch(r"(.+)[\[(]([^\[(]*)[\])]", name, re.DOTALL)
@@ -115,7 +120,7 @@ def column_name(name):
     return ColumnName(re.sub(r"[^a-z0-9]", "", name.translate(_LETTERS).lower()), unit, "" if unit else unknown)
 
 
-def other_quantity(name, wanted):
+def other_quantity(name: str | ColumnName, wanted: str) -> str:
     """Why a column of this name is none of the `wanted` quantity, "force" or "length", and the remedy; empty if the name does not say so."""
     name = column_name(name) if isinstance(name, str) else name
     quantity = name.quantity
@@ -127,9 +132,9 @@ def other_quantity(name, wanted):
     return f"a name says {says} {wanted}: {remedy.get((quantity, wanted), 'change the table')}, and name the column by the unit of the {wanted}"
 
 
-def columns_by_key(role, columns):
+def columns_by_key(role: str, columns: list[str]) -> dict[str, list[str]]:
     """The columns that names tell for the keys of a table of that role."""
-    found = {}
+    found = dict[str, list[str]]()
     for column in columns:
         base = column_name(column).base
         for key in [key for key, words in WORDS[role] if base in words.split()][:1]:

@@ -1,11 +1,14 @@
 """The plate's table: height and force by row; phases and cycles from reversals if there are no columns for them."""
+from typing import Any
+
 import numpy as np
 
 from ..number_text import shortest
-from ..problems import quoted
+from ..problems import Problems, quoted
+from .arrays import Floats, Ints
 from .mapping import signed_column
 from .names import TIMES, column_name
-from .rows import FrameIndex, Rows
+from .rows import FrameIndex, ImportTable, Rows
 
 TURN = 0.01  # of the stroke: smaller reversals are noise
 LOAD, UNLOAD = 0, 1
@@ -14,18 +17,18 @@ PHASES = {**dict.fromkeys("load loading down compression compress belastung".spl
 
 
 class PlateRows:
-    def __init__(self, z=(), force=(), keys=(), rows=None):
+    def __init__(self, z: Any = (), force: Any = (), keys: Any = (), rows: Rows | None = None) -> None:
         self.z, self.force = np.asarray(z, float), np.asarray(force, float)  # [m], upward force on it [N]
         self.index, self.rows = FrameIndex(keys), rows  # `rows` for messages
         self.time = self.set_force = np.full(len(self.z), np.nan)  # [s], [N]; of a programme
         self.phase = np.zeros(len(self.z), int)
         self.cycle = np.zeros(len(self.z), int)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.z)
 
 
-def _phases(z):
+def _phases(z: Floats) -> Ints:
     """A phase starts after the lowest or highest position before a reversal."""
     turn, phase, now, extreme = TURN * (z.max() - z.min()), np.zeros(len(z), int), LOAD, 0
     for i in range(1, len(z)):
@@ -40,9 +43,9 @@ def _phases(z):
     return phase
 
 
-def check_heights(plate, start, first):
+def check_heights(plate: PlateRows, start: float, first: int) -> None:
     """Heights of the rows from `first` on."""
-    if not len(plate) or not np.isfinite(plate.z[first:]).any():
+    if plate.rows is None or not np.isfinite(plate.z[first:]).any():
         return
     rows, goes_down = plate.rows, "displacement" in plate.rows
     for low in np.flatnonzero(plate.z <= 0)[:1]:
@@ -56,7 +59,7 @@ def check_heights(plate, start, first):
                         else "see length_unit, and --set plate.start=.."))
 
 
-def _read_phases(rows, plate, problems):
+def _read_phases(rows: Rows, plate: PlateRows, problems: Problems) -> None:
     if "phase" in rows:
         for i in range(len(rows)):
             text = rows.text(i, "phase")
@@ -74,7 +77,7 @@ def _read_phases(rows, plate, problems):
         plate.cycle = np.cumsum(np.diff(plate.phase, prepend=LOAD) == LOAD - UNLOAD)
 
 
-def import_plate(table, start, problems, programme=False):
+def import_plate(table: ImportTable, start: float, problems: Problems, programme: bool = False) -> PlateRows:
     """Heights require `start` [m] (NaN if unknown) if the table contains displacements. Rows of a programme require
     times."""
     mapped, rows = table.map, Rows(table, problems)

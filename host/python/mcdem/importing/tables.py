@@ -2,6 +2,7 @@
 import array
 import gzip
 import zlib
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -10,32 +11,34 @@ from ..look import is_file, is_there
 from ..number_text import shortest
 from ..problems import Problems
 from . import formats
+from .arrays import Floats
+from .boxes import Box
 from .text import Form, cut, numbers_of, parse_text
 
 LARGEST = 1 << 30  # maximum size of a table in bytes, uncompressed
 
 
 class Table:
-    def __init__(self, file):
-        self.file, self.format, self.form = file, "text", None
-        self.lines = []  # of the file, for cells that are not numbers and for messages
+    def __init__(self, file: str) -> None:
+        self.file, self.format, self.form = file, "text", Form()
+        self.lines = list[str]()  # of the file, for cells that are not numbers and for messages
         self.decimal_clear = True  # otherwise every comma may also be a thousands separator: 1,306
-        self.named, self.columns = False, []  # whether the file has names of columns; otherwise they are "column 1", ..
-        self.repeated = set()  # names that several columns have
-        self.frames = []  # of a dump: (timestep, first row)
-        self.boxes = []  # of each frame, or of the file; None: not said
-        self._places = {}  # of columns by their names
-        self.line_of = []  # of each row, from 1; empty if rows are not lines
-        self._values = array.array("d")  # row by row; NaN: not a finite number
+        self.named, self.columns = False, list[str]()  # whether the file has names of columns; otherwise they are "column 1", ..
+        self.repeated = set[str]()  # names that several columns have
+        self.frames = list[tuple[float, int]]()  # of a dump: (timestep, first row)
+        self.boxes = list[Box | None]()  # of each frame, or of the file; None: not said
+        self._places = dict[str, int]()  # of columns by their names
+        self.line_of = list[int]()  # of each row, from 1; empty if rows are not lines
+        self._values: array.array[float] | Floats = array.array("d")  # row by row; NaN: not a finite number
 
     @property
-    def rows(self):
+    def rows(self) -> int:
         return len(self._values) // max(len(self.columns), 1)
 
-    def begin(self, format_, lines, form):
+    def begin(self, format_: str, lines: list[str], form: Form) -> None:
         self.format, self.lines, self.form = format_, lines, form
 
-    def name_columns(self, names, count):
+    def name_columns(self, names: Sequence[str], count: int) -> None:
         """Replaces names by the column's number if they are missing, repeated, or begin with a question mark or a minus, which a
         mapping uses for unconfirmed values and reversed columns."""
         self.columns, self.repeated = [], set()
@@ -49,33 +52,34 @@ class Table:
             self.columns.append(name)
         self.named = bool(names)
 
-    def add_row(self, cells, line):
+    def add_row(self, cells: Sequence[str], line: int) -> None:
+        assert isinstance(self._values, array.array)
         self._values.extend(numbers_of(cells, self.form.decimal))
         self.line_of.append(line)
 
-    def set_numbers(self, format_, columns, values, line_of=()):
+    def set_numbers(self, format_: str, columns: list[str], values: Floats, line_of: Iterable[int] = ()) -> None:
         self.begin(format_, self.lines, Form(" ", "."))
         self.name_columns(columns, len(columns))
         self._values, self.line_of = np.where(np.isfinite(values), values, np.nan).ravel(), list(line_of)
 
-    def numbers(self, column):
+    def numbers(self, column: int) -> Floats:
         """NaN if the cell is not a finite number."""
         return np.asarray(self._values)[column::len(self.columns)]
 
-    def text(self, row, column):
+    def text(self, row: int, column: int) -> str:
         if not self.lines:
             return shortest(self.numbers(column)[row])
         return cut(self.lines[self.line_of[row] - 1], self.form.separator)[column]
 
-    def find(self, name):
+    def find(self, name: str) -> int | None:
         """Position of a column by its name or as "column 3"; None if there is none."""
         return self._places.get(name, {f"column {i + 1}": i for i in range(len(self.columns))}.get(name))
 
-    def where(self, row):
+    def where(self, row: int) -> str:
         return f"{self.file}:{self.line_of[row]}" if self.line_of else self.file
 
 
-def _bytes_of(file):
+def _bytes_of(file: str) -> bytes:
     """The file's bytes, decompressed if necessary."""
     if not is_file(file):
         got = "something that is not a file" if is_there(file) else "no such file"
@@ -94,7 +98,7 @@ def _bytes_of(file):
     return content
 
 
-def parse_table(content, file, form=None):
+def parse_table(content: bytes, file: str, form: Form | None = None) -> Table:
     """`form` overrides the guess of the text format."""
     table, problems = Table(file), Problems()
     content = content.removeprefix(b"\xef\xbb\xbf")
@@ -121,11 +125,11 @@ def parse_table(content, file, form=None):
     return table
 
 
-def read_table(file, form=None):
+def read_table(file: str, form: Form | None = None) -> Table:
     return parse_table(_bytes_of(file), file, form)
 
 
-def read_tables(files, form=None):
+def read_tables(files: Sequence[str], form: Form | None = None) -> list[Table]:
     """All tables, or the problems of all of them together."""
     tables, problems = [], []
     for file in files:

@@ -7,9 +7,13 @@ import itertools
 import math
 import re
 from collections import Counter
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
-from ..problems import quoted, to_number
+from ..problems import Problems, quoted, to_number
+
+if TYPE_CHECKING:
+    from .tables import Table
 
 SAMPLED_LINES = 100
 MAX_COLUMNS = 10_000
@@ -28,7 +32,7 @@ class Form(NamedTuple):
 FORMS = list(itertools.starmap(Form, itertools.product(";\t, ", ".,")))  # in order of preference among equally good ones
 
 
-def cut(line, separator):
+def cut(line: str, separator: str) -> list[str]:
     """Cells of a line; a quoted cell may contain the separator."""
     if separator == " ":
         return line.split()
@@ -39,33 +43,33 @@ def cut(line, separator):
     return [cell[1:-1] if len(cell) >= 2 and cell[0] == cell[-1] == '"' else cell for cell in cells]
 
 
-def cell_number(cell, decimal):
+def cell_number(cell: str, decimal: str) -> float | None:
     """A finite number, or None."""
     if decimal == "." or "," not in cell:
         return to_number(cell)
     return to_number(cell.replace(",", ".", 1)) if "." not in cell and len(cell) <= 64 else None
 
 
-def numbers_of(cells, decimal):
+def numbers_of(cells: Sequence[str], decimal: str) -> list[float]:
     """NaN where a cell is not a finite number."""
     return [math.nan if (number := cell_number(cell, decimal)) is None else number for cell in cells]
 
 
-def _numbers_in(cells, decimal):
+def _numbers_in(cells: Sequence[str], decimal: str) -> int:
     return sum(cell_number(cell, decimal) is not None for cell in cells)
 
 
-def sample(lines):
+def sample(lines: list[str]) -> list[str]:
     """The first lines that are neither blank nor comments."""
     return list(itertools.islice((line for line in lines if line.strip()[:1] not in ("", "#")), SAMPLED_LINES))
 
 
-def _usual_width(rows):
+def _usual_width(rows: list[list[str]]) -> int:
     """The most frequent number of cells; the largest one in a tie."""
     return max(((count, width) for width, count in Counter(map(len, rows)).items()), default=(0, 0))[1]
 
 
-def _merit(lines, form):
+def _merit(lines: list[str], form: Form) -> float:
     """Fraction of lines with the usual number of cells, times the fraction of numbers among their cells."""
     rows = [cut(line, form.separator) for line in lines]
     width = _usual_width(rows)
@@ -74,18 +78,18 @@ def _merit(lines, form):
     return (1 if width > 1 else 0.1) * len(alike) / len(lines) * (0.01 + numbers / len(alike))
 
 
-def guess_form(lines):
+def guess_form(lines: list[str]) -> Form:
     lines = sample(lines)
     return max(FORMS, key=lambda form: round(_merit(lines, form), 12)) if lines else Form()
 
 
-def _kind(cell):
+def _kind(cell: str) -> str:
     if cell_number(cell, ".") is not None or cell_number(cell, ",") is not None:
         return "number"
     return "nothing" if cell in NOTHING else "word"
 
 
-def _lines_above(lines, separator):
+def _lines_above(lines: list[str], separator: str) -> int:
     """Number of header lines that are no rows although they may hold numbers. They end above the names of the columns, the last line
     with only words, if each of them has a word in a column of numbers: `Vorkraft;0,5;N` is not a row of `Zeit;Weg;Kraft`. Otherwise
     they are the lines with words before the first line with the usual number of cells: `Probe;17` is not a row."""
@@ -100,7 +104,7 @@ def _lines_above(lines, separator):
     return next((n for n, row in enumerate(rows) if len(row) == width or "word" not in row), len(rows))
 
 
-def _note_marks(seen, cells, line):
+def _note_marks(seen: dict[str, tuple[str, int]], cells: Sequence[str], line: int) -> None:
     """Notes evidence for or against a decimal comma: the first cell of each kind with its line."""
     for cell in cells:
         if ("," in cell or "." in cell) and cell_number(cell, ",") is not None:
@@ -108,7 +112,7 @@ def _note_marks(seen, cells, line):
             seen.setdefault(kind, (cell, line))
 
 
-def _names_of(headings, comment, format_, width):
+def _names_of(headings: list[list[str]], comment: list[str], format_: list[str], width: int) -> list[str]:
     """Names of the columns: the last line before the first row, or the last two if the second contains units."""
     headings = [names for names in headings if len(names) in (width, width + 1)]
     if not headings:
@@ -120,17 +124,17 @@ def _names_of(headings, comment, format_, width):
     return names
 
 
-def _ends_in_separators(lines, separator, width):
+def _ends_in_separators(lines: list[str], separator: str, width: int) -> bool:
     """Whether lines of that many cells have nothing in the last one: neither a column's name nor, in any row, a value."""
     rows = (cut(line.lstrip(" \t\r#") if line.lstrip(" \t\r")[:1] == "#" else line, separator) for line in lines)
     return not any(cells[-1] for cells in rows if len(cells) == width)
 
 
-def parse_text(table, lines, form, problems):
+def parse_text(table: "Table", lines: list[str], form: Form | None, problems: Problems) -> None:
     form = form or guess_form(lines)
     table.begin("text", lines, form)
     above = _lines_above(lines, form.separator)
-    headings, comment, format_, trailing, marks = [], [], [], None, {}
+    headings, comment, format_, trailing, marks = list[list[str]](), list[str](), list[str](), None, dict[str, tuple[str, int]]()
     for number, line in enumerate(lines, 1):
         words = line.strip()
         if not words or problems.full or (words[0] == "#" and table.columns):
@@ -170,8 +174,8 @@ def parse_text(table, lines, form, problems):
             problems.add(f"{table.file}:{number}", f"must have {len(table.columns)} columns as the first row, got {len(cells)}")
     table.decimal_clear = "either" not in marks or "comma" in marks
     if "either" in marks and "point" in marks:
-        (cell, line), (point, point_line) = marks["either"], marks["point"]
-        problems.add(f"{table.file}:{line}", "numbers must have one decimal mark and no separators of thousands, got "
+        (cell, first), (point, point_line) = marks["either"], marks["point"]
+        problems.add(f"{table.file}:{first}", "numbers must have one decimal mark and no separators of thousands, got "
                      f"{quoted(cell)} beside {quoted(point)} in line {point_line}: write the table with points only")
     if table.rows == 0 and not problems.count:
         problems.add(table.file, "must have at least one row with a number in it, got none")
