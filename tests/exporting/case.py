@@ -17,17 +17,17 @@ class Case(unittest.TestCase):
         kept = tempfile.TemporaryDirectory(prefix="mcdem-export-")
         self.addCleanup(kept.cleanup)
         self.folder = pathlib.Path(kept.name)
-
-        self.view = self.folder / "view"
+        self.run, self.view = self.folder / "run", self.folder / "view"
+        self.run.mkdir()
         self.view.mkdir()
 
     def export(self, run, form, replicas=(), scans=(), parts=()):
-        """Writes the run, in files of `parts` scans if given, and exports it; returns the number of files."""
-        files, first = [], 0
+        """Writes the run, in segments of `parts` scans if given, and exports it; returns the number of files."""
+        first = 0
         for number, count in enumerate(parts or [len(run[0].scans)]):
-            files.append(synthetic.write_run(self.folder / f"{number}.h5", run, first, first + count))
+            synthetic.write_run(self.run / f"segment-{number:06}.h5", run, first, first + count)
             first += count
-        return exporting.export(files, self.view, [form], replicas, scans)
+        return exporting.export(self.run, self.view, [form], replicas, scans)
 
     def grid(self, name, replica=FIRST, scan=0):
         """Tables of an exported file by their names in it."""

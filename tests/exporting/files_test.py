@@ -8,7 +8,7 @@ import case
 from case import FIRST, SECOND
 from synthetic import h5py, make_run, write_run
 
-from mcdem.errors import RunError
+from mcdem.errors import InputError
 
 
 class Xyz(case.Case):
@@ -90,25 +90,23 @@ class Writing(case.Case):
             self.export(make_run(), form)
 
     def test_a_failed_write_leaves_nothing_and_names_the_file(self):
-        file = write_run(self.folder / "run.h5", make_run(scans=40))
+        write_run(self.run / "run.h5", make_run(scans=40))
         limit = resource.getrlimit(resource.RLIMIT_FSIZE)
         resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, limit[1]))
         self.addCleanup(resource.setrlimit, resource.RLIMIT_FSIZE, limit)
         with self.assertRaisesRegex(OSError, f"File too large.*{FIRST}"):
-            case.exporting.export([file], self.view, [case.xyz])
+            case.exporting.export(self.run, self.view, [case.xyz])
         self.assertEqual([file.name for file in self.view.iterdir()], ["OVITO.txt"])
 
-    def test_a_damaged_run_is_an_error_that_names_it(self):
-        """What h5py raises of a file in which something is missing or cannot be read."""
-        file = write_run(self.folder / "run.h5", make_run(scans=4))
+    def test_of_a_damaged_run_nothing_is_written(self):
+        file = self.run / "run.h5"
         for lost in ("contacts/replica_00000/offset", "observables/replica_00000", "particles/replica_00000/position/value", "parameters"):
-            whole = file.read_bytes()
+            write_run(file, make_run(scans=4))
             with h5py.File(file, "a") as run:
                 del run[lost]
-            for form in (case.vtk, case.xyz):
-                with self.assertRaisesRegex(RunError, f"{file}: cannot be read: "):
-                    case.exporting.export([file], self.view, [form])
-            file.write_bytes(whole)
+            with self.assertRaisesRegex(InputError, f"^{file}: "):
+                case.exporting.export(self.run, self.view, [case.xyz])
+            self.assertEqual(list(self.view.iterdir()), [])
 
     def test_file_systems_without_locks(self):
         for error in (errno.ENOLCK, 524, errno.EOPNOTSUPP):

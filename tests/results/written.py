@@ -33,13 +33,17 @@ def contacts():
 def write_run(file, replicas=1):
     """Replicas with the scans and contacts above; positions were recorded in the first and last scan."""
     with h5py.File(file, "w", libver=("v110", "v110")) as run:
-        head = run.create_group("parameters")
-        for name, value in (("name", "made by hand"), ("program", "0.2.0 (test)"), ("device", "none"), ("precision", "float")):
-            head.attrs[name] = np.bytes_(value)
-        head.attrs["format"], head.attrs["replicas"] = 1, replicas
-        add(run, "parameters/scene", np.array([b'name = "made"']))
+        write_head(run, replicas)
         for number in range(replicas):
             write_replica(run, f"replica_{number:05}", number)
+
+
+def write_head(run, replicas):
+    head = run.create_group("parameters")
+    for name, value in (("name", "made by hand"), ("program", "0.2.0 (test)"), ("device", "none"), ("precision", "float")):
+        head.attrs[name] = np.bytes_(value)
+    head.attrs["format"], head.attrs["replicas"] = 1, replicas
+    add(run, "parameters/scene", np.array([b'name = "made"']))
 
 
 def add(run, name, values):
