@@ -5,7 +5,7 @@ import unittest
 import numpy as np
 from numpy.testing import assert_array_equal
 
-from mcdem.calibration.search import Bracket, SearchOptions, find_value
+from mcdem.calibration.search import SearchOptions, find_value
 from mcdem.errors import InputError, RunError
 
 
@@ -27,7 +27,7 @@ class Simulator:
 
 class Search(unittest.TestCase):
     def found(self, simulator, root, low, high, **options):
-        return find_value(simulator, force(root), Bracket(low, high), SearchOptions(**options))
+        return find_value(simulator, force(root), SearchOptions(low, high, **options))
 
     def test_finds_the_root_of_a_smooth_response(self):
         simulator = Simulator()
@@ -96,21 +96,21 @@ class Problems(unittest.TestCase):
         for limit, root, says in ((0.9, 1.1, "no gamma gives Rtop = 1"), (0.1, 1.1, "runs away already at gamma = 0.4"),
                                   (math.inf, 0.2, "starts lower, or check the modulus"), (math.inf, 2.0, "ends higher than 1.6")):
             with self.subTest(says):
-                self.assertIn(says, self.message(RunError, Simulator(limit=limit), force(root), Bracket(0.4, 1.6)))
-        self.assertIn("comes only to", self.message(RunError, Simulator(), force(2.0), Bracket(0.4, 1.6), SearchOptions(rounds=1)))
+                self.assertIn(says, self.message(RunError, Simulator(limit=limit), force(root), SearchOptions(0.4, 1.6)))
+        self.assertIn("comes only to", self.message(RunError, Simulator(), force(2.0), SearchOptions(0.4, 1.6, rounds=1)))
 
     def test_all_input_problems_are_reported_at_once(self):
-        told = self.message(InputError, lambda gammas: gammas, -1, Bracket(1.5, 0.5), SearchOptions(0, 1, 0))
+        told = self.message(InputError, lambda gammas: gammas, -1, SearchOptions(1.5, 0.5, 0, 1, 0))
         self.assertEqual(told.splitlines(), ["calibration: target top force must be > 0 [N], got -1",
                                              "calibration: high end of the bracket must be above its low end, got 0.5",
                                              "calibration: tolerance must be > 0, got 0",
                                              "calibration: batch must be at least 3 values per round, got 1",
                                              "calibration: rounds must be at least 1, got 0"])
-        for bracket in (Bracket(-0.1, 1), Bracket(math.nan, 1)):
+        for bracket in (SearchOptions(-0.1, 1), SearchOptions(math.nan, 1)):
             self.assertIn("low end", self.message(InputError, lambda gammas: gammas, 1, bracket))
 
     def test_a_wrong_result_of_the_simulator_is_reported(self):
-        self.assertIn("asked for 6 top forces, got 1", self.message(RunError, lambda _: np.ones(1), 10, Bracket()))
+        self.assertIn("asked for 6 top forces, got 1", self.message(RunError, lambda _: np.ones(1), 10, SearchOptions()))
 
 
 if __name__ == "__main__":

@@ -1,11 +1,10 @@
 """mcdem challenge make: simulated experiments with hidden effects."""
 import argparse
 import os
-import re
 
 from ..parts import interruptible
 from ..progress import Progress
-from .command_line import at_least_zero, names, number_in, output_path, whole_in
+from .command_line import any_whole, at_least_zero, names, number_in, option_of, output_path, whole_in
 from .scene_options import add_device_option, add_scene_options, read_scene
 
 EPILOG = """\
@@ -40,21 +39,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--effects", metavar="NAME,..", type=names, action="extend", default=[],
                         help="Effects to hide; default: a dozen of all kinds")
     for name, (number, text) in SIZES.items():
-        parser.add_argument(_option(name), metavar="N", type=_whole, default=number, help=text)
+        parser.add_argument(option_of(name), metavar="N", type=any_whole, default=number, help=text)
     for name, (value, unit, check, text) in MEASUREMENT.items():
-        parser.add_argument(_option(name), metavar=unit, type=check, default=value, help=text)
+        parser.add_argument(option_of(name), metavar=unit, type=check, default=value, help=text)
     add_device_option(parser)
-
-
-def _whole(text: str) -> int:
-    """A whole number; the plan reports all that are too small together."""
-    if not re.fullmatch(r"[+-]?\d{1,9}", text, re.ASCII):
-        raise argparse.ArgumentTypeError(f"must be a whole number, got {text}")
-    return int(text)
-
-
-def _option(name: str) -> str:
-    return "--" + name.replace("_", "-")
 
 
 def run(options: argparse.Namespace) -> int:

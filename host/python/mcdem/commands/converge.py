@@ -1,16 +1,11 @@
 """mcdem converge: influence of a scene's numerics on its results."""
 import argparse
-from typing import TYPE_CHECKING
 
 from ..parts import interruptible
 from ..program import say
 from ..progress import StageProgress
 from .command_line import above_zero, number_in, output_path, whole_in
 from .scene_options import add_device_option, add_scene_options, read_scene
-
-if TYPE_CHECKING:
-    from .._engine import Scene
-    from ..convergence.convergence_types import Convergence
 
 EPILOG = """\
 Runs the scene as it stands and with finer numerics, all from the same jittered packings: the plate 2, 4
@@ -41,7 +36,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    from .. import _engine
+    from ..convergence.converge import Study
     from ..convergence.convergence_json import FILE, write_convergence
+    from ..convergence.convergence_types import Limits
     from ..outputs import CONVERGENCE, expect_replaceable, output_folder, remove_temporaries
     from ..report.draw import expect_replaceable_figures
     from ..report.present_convergence import present
@@ -50,21 +48,14 @@ def run(options: argparse.Namespace) -> int:
         remove_temporaries(folder / "simulations")
         expect_replaceable(folder / FILE, CONVERGENCE)
         expect_replaceable_figures(folder, ("convergence",))
-        convergence = _converge(options, scene)
+        with interruptible(), StageProgress() as stages:
+            simulator = _engine.ConvergenceSimulator(scene, options.out, replicas=options.replicas, jitter=options.jitter,
+                                                     seed=options.seed, device=options.device)
+            say(f"{scene.name} on {simulator.device_name}")
+            if len(scene) > 1:
+                say(f"the scene has {len(scene)} replicas; the first one is looked at: {scene.labels[0]}")
+            limits = Limits(options.force_limit, options.sd_limit)
+            convergence = Study(scene, simulator, options.jitter, limits, stages.show).run()
         write_convergence(convergence, folder)
         present(convergence, options.out)
     return 0
-
-
-def _converge(options: argparse.Namespace, scene: "Scene") -> "Convergence":
-    from .. import _engine
-    from ..convergence.convergence_types import Limits
-    from ..convergence.converge import Study
-    with interruptible(), StageProgress() as stages:
-        simulator = _engine.ConvergenceSimulator(scene, options.out, replicas=options.replicas, jitter=options.jitter, seed=options.seed,
-                                                 device=options.device)
-        say(f"{scene.name} on {simulator.device_name}")
-        if len(scene) > 1:
-            say(f"the scene has {len(scene)} replicas; the first one is looked at: {scene.labels[0]}")
-        limits = Limits(options.force_limit, options.sd_limit)
-        return Study(scene, simulator, options.jitter, limits, stages.show).run()

@@ -3,7 +3,7 @@ import argparse
 from types import ModuleType
 
 from ..errors import InputError
-from .command_line import output_path
+from .command_line import any_whole, output_path
 
 EPILOG = """\
 Needs positions and contacts in the run (output.positions, output.contacts: both on by default).
@@ -13,22 +13,15 @@ Examples:
   mcdem export out/small --xyz --out out/ovito"""
 
 
-def whole_number(text: str) -> int:
-    try:
-        return int(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"must be a whole number, got {text}") from None
-
-
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("RUN", help="Result folder or file")
     parser.add_argument("--vtk", action="store_true",
                         help="Write VTKHDF files: grains, contacts, forces and walls, one file of each per scan")
     parser.add_argument("--xyz", action="store_true",
                         help="Write extended XYZ of the grains and a LAMMPS local dump of the contacts, one file of each per replica")
-    parser.add_argument("--replica", metavar="N", type=whole_number, nargs="+", action="extend", default=[],
+    parser.add_argument("--replica", metavar="N", type=any_whole, nargs="+", action="extend", default=[],
                         help="Numbers of the replicas to export; default: all")
-    parser.add_argument("--scan", metavar="N", type=whole_number, nargs="+", action="extend", default=[],
+    parser.add_argument("--scan", metavar="N", type=any_whole, nargs="+", action="extend", default=[],
                         help="Numbers of the scans to export (column frame of plate.csv); default: all")
     parser.add_argument("--out", metavar="DIR", type=output_path, required=True, help="Folder for the exported files")
 
@@ -51,4 +44,4 @@ def write_files(options: argparse.Namespace) -> int:
     formats = _formats(options)
     if not formats:
         raise InputError("export: choose a format: vtk, xyz or both")
-    return int(export(options.RUN, options.out, formats, options.replica, options.scan))
+    return export(options.RUN, options.out, formats, options.replica, options.scan)

@@ -1,9 +1,11 @@
 """Exports grains and contacts of a run for ParaView (vtk.py) and OVITO (xyz.py)."""
 import os
+from collections.abc import Collection, Sequence
+from types import ModuleType
 
 from ..errors import InputError
 from ..files import write_whole
-from ..look import is_link, is_there
+from ..look import Path, is_link, is_there
 from ..outputs import Kind, expect_replaceable, output_folder, remove_temporaries
 from ..results import read_run
 from ..results.folder import result_files
@@ -11,7 +13,7 @@ from ..results.parameters import keys_that_vary
 from .scans import Replica
 
 
-def export(run, out, formats, replicas=(), scans=()):
+def export(run: str, out: Path, formats: Sequence[ModuleType], replicas: Collection[int] = (), scans: Collection[int] = ()) -> int:
     """Exports a run (result folder or file) into the folder `out` by modules of this package: vtk, xyz. `replicas`, `scans`: their
     numbers; all where empty. Returns the number of files.
 
