@@ -37,6 +37,16 @@ def missing_programs(codes=("liggghts", "lammps")):
     return [PROGRAMS[code] for code in dict.fromkeys([*codes, "lammps"]) if not shutil.which(PROGRAMS[code])]
 
 
+def run_scene(mcdem, folder, name, text):
+    """The result file of a run of this scene by mcdem."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{name}.toml").write_text(text)
+    out = folder / f"{name}_run"
+    shutil.rmtree(out, ignore_errors=True)
+    subprocess.run([mcdem, "run", folder / f"{name}.toml", "--out", out, "--no-figures"], check=True, stdout=subprocess.DEVNULL)
+    return out / "run.h5"
+
+
 def execute(program, script, folder, variables):
     command = [program, "-log", "none", "-in", HERE / script, "-var", "folder", "."]
     for name, value in variables.items():

@@ -2,10 +2,9 @@
 last scan, for pairs of the same and of different species: species_test.py MCDEM FOLDER"""
 import pathlib
 import shutil
-import subprocess
 import sys
 
-from realities import execute
+from realities import execute, run_scene
 
 try:
     import h5py
@@ -56,12 +55,7 @@ precision = "double"
 
 def mcdem_run(mcdem, folder):
     """Positions, diameters, species and contacts between grains of the scan with the lowest plate."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "species.toml").write_text(SCENE)
-    out = folder / "species_run"
-    shutil.rmtree(out, ignore_errors=True)
-    subprocess.run([mcdem, "run", folder / "species.toml", "--out", out, "--no-figures"], check=True, stdout=subprocess.DEVNULL)
-    with h5py.File(out / "run.h5") as run:
+    with h5py.File(run_scene(mcdem, folder, "species", SCENE)) as run:
         name = next(iter(run["observables"]))
         particles, contacts = run["particles"][name], run["contacts"][name]
         rows = contacts["contact"][contacts["offset"][0]:contacts["offset"][1]]

@@ -67,3 +67,10 @@ def write_replica(run, name, number):
     add(run, f"observables/{name}", scans())
     add(run, f"contacts/{name}/contact", contacts())
     add(run, f"contacts/{name}/offset", OFFSET)
+
+
+def add_species_and_failure(run):
+    """To the first replica."""
+    particles = run["particles/replica_00000"]
+    particles.attrs["failure_cause"], particles.attrs["failure_step"], particles.attrs["failure_grain"] = np.bytes_("why"), 10**12, 3
+    particles["species"], particles["species_names"] = [0, 1, 1, 0], np.array([b"soft", b"stiff"])
