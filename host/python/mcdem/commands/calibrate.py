@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ..parts import interruptible
 from ..program import say
 from ..progress import Progress
-from .command_line import at_least_zero, output_path, whole_in
+from .command_line import add_numbers, at_least_zero, given, output_path, whole_in
 from .scene_options import add_device_option, add_scene_options, read_scene
 from .sources import add_reference_options
 
@@ -24,6 +24,15 @@ Examples (DIR: your experiment folder):
   mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --model hyperelastic_sphere"""
 
 
+SEARCH = {
+    "low": (0.5, "VALUE", at_least_zero, "Lower end of the search: gamma, or E divided by the scene's E"),
+    "high": (1.5, "VALUE", at_least_zero, "Upper end of the search: gamma, or E divided by the scene's E"),
+    "tolerance": (0.005, "ERROR", at_least_zero, "Stop at this standard error of gamma, or of E divided by the scene's E"),
+    "batch": (6, "N", whole_in(3, 10_000), "Number of values that are simulated together in one round"),
+    "rounds": (8, "N", whole_in(1, 10_000), "Maximum number of rounds"),
+}
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     add_reference_options(parser, "--experiment", "Experiment folder or run whose mean top force at maximum compression is the target",
@@ -32,15 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="mc_dem: fit gamma; any other contact model: fit Young's modulus of the grains")
     parser.add_argument("--out", metavar="DIR", type=output_path, help="Folder for calibration.json")
     add_device_option(parser)
-    parser.add_argument("--low", metavar="VALUE", type=at_least_zero, default=0.5,
-                        help="Lower end of the search: gamma, or E divided by the scene's E")
-    parser.add_argument("--high", metavar="VALUE", type=at_least_zero, default=1.5,
-                        help="Upper end of the search: gamma, or E divided by the scene's E")
-    parser.add_argument("--tolerance", metavar="ERROR", type=at_least_zero, default=0.005,
-                        help="Stop at this standard error of gamma, or of E divided by the scene's E")
-    parser.add_argument("--batch", metavar="N", type=whole_in(3, 10_000), default=6,
-                        help="Number of values that are simulated together in one round")
-    parser.add_argument("--rounds", metavar="N", type=whole_in(1, 10_000), default=8, help="Maximum number of rounds")
+    add_numbers(parser, SEARCH)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -50,8 +51,7 @@ def run(options: argparse.Namespace) -> int:
     from ..json_text import json_text
     from ..observe.reference import load_reference
     from ..outputs import CALIBRATION, expect_replaceable, output_folder, replace_own
-    wanted = Options(calibrated_model(options.model, "--model"),
-                     SearchOptions(options.low, options.high, options.tolerance, options.batch, options.rounds), options.device)
+    wanted = Options(calibrated_model(options.model, "--model"), SearchOptions(**given(options, SEARCH)), options.device)
     reference = load_reference(options.experiment, options.setting, options.discard)
     scene = read_scene(options)
     with contextlib.ExitStack() as stack:

@@ -2,7 +2,7 @@
 import argparse
 import importlib
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NoReturn
 
 from ..command import ask
@@ -76,9 +76,20 @@ whole_at_least_zero = whole(lambda value: 0 <= value < 10**9, "a whole number >=
 any_whole = whole(lambda value: abs(value) < 10**9, "a whole number")
 
 
-def option_of(name: str) -> str:
-    """Of a field: "--library-packings"."""
-    return "--" + name.replace("_", "-")
+# Name of a field -> default, unit, check, help of its option.
+Numbers = Mapping[str, tuple[float, str, Callable[[str], float], str]]
+any_seed = whole_in(0, 2**64 - 1)
+
+
+def add_numbers(parser: argparse.ArgumentParser, numbers: Numbers) -> None:
+    """An option for each: --library-packings for library_packings."""
+    for name, (value, unit, check, text) in numbers.items():
+        parser.add_argument("--" + name.replace("_", "-"), metavar=unit, type=check, default=value, help=text)
+
+
+def given(options: argparse.Namespace, numbers: Iterable[str]) -> dict[str, Any]:
+    """The values of these fields."""
+    return {name: getattr(options, name) for name in numbers}
 
 
 def names(text: str) -> list[str]:

@@ -3,7 +3,7 @@ import argparse
 import re
 
 from .challenge_make import MEASUREMENT
-from .command_line import at_least_zero, number_in, option_of, output_path, whole_in
+from .command_line import add_numbers, any_seed, at_least_zero, given, number_in, output_path
 
 EPILOG = """\
 Materials are stated as in the run; its effects are not. Unstated errors act on the data but are not
@@ -13,9 +13,8 @@ Examples:
   mcdem experiment from-run out/begun --replica mc_dem --out out/measured"""
 
 
-# Option -> default, unit, check, help.
 STATED = MEASUREMENT | {"diameter_error": (5e-5, *MEASUREMENT["diameter_error"][1:])}
-# Option -> unit, check, help: the other fields of Instrument (host/experiment/instrument.h); with effects' formulas of the diagnosis.
+# The other fields of Instrument (host/experiment/instrument.h); with effects' formulas of the diagnosis.
 UNSTATED = {
     "force_bias": ("FRACTION", number_in(-0.5, 0.5), "relative error by which contact forces are measured too large"),
     "threshold_shift": ("N", number_in(-1, 1), "the true force threshold is higher by this [N]"),
@@ -41,19 +40,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--replica", metavar="REPLICA", default="",
                         help="Label or number (from 0) of the replica; required if the run has several")
     parser.add_argument("--name", metavar="TEXT", default="", help="Name of the experiment (default: that of the run and the replica)")
-    for name, (value, unit, check, text) in STATED.items():
-        parser.add_argument(option_of(name), metavar=unit, type=check, default=value, help=text)
-    for name, (unit, check, text) in UNSTATED.items():
-        parser.add_argument(option_of(name), metavar=unit, type=check, default=0.0, help=f"Unstated error: {text}")
+    add_numbers(parser, STATED)
+    add_numbers(parser, {name: (0.0, unit, check, f"Unstated error: {text}") for name, (unit, check, text) in UNSTATED.items()})
     parser.add_argument("--uncertainty", metavar="KEY=SIGMA", action="append", default=[],
                         help="Stated standard error of a material parameter, such as grains.youngs_modulus=500; may be repeated")
-    parser.add_argument("--seed", metavar="N", type=whole_in(0, 2**64 - 1), default=1, help="Seed of the noise")
+    parser.add_argument("--seed", metavar="N", type=any_seed, default=1, help="Seed of the noise")
     parser.add_argument("--gzip", action="store_true", help="Compress the tables with gzip")
 
 
 def run(options: argparse.Namespace) -> int:
     from ..experiment.from_run import Options, write_from_run
     print(write_from_run(Options(run=options.RUN, out=options.out, replica=options.replica, name=options.name, seed=options.seed,
-                                 instrument={name: getattr(options, name) for name in (*STATED, *UNSTATED)},
+                                 instrument=given(options, (*STATED, *UNSTATED)),
                                  uncertainty=options.uncertainty, gzip=options.gzip)))
     return 0
