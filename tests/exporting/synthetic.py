@@ -1,12 +1,17 @@
-"""A result file with all kinds of data (host/io/README.md), written by h5py."""
+"""Shared by the tests of exports: a result file with all kinds of data (host/io/README.md), written by h5py, and its export."""
 import pathlib
 import sys
+import tempfile
+import unittest
 
 import h5py
 import numpy as np
 
 sys.path.append(str(pathlib.Path(__file__).parents[1] / "results"))
 import written  # noqa: E402
+
+from mcdem import exporting  # noqa: E402
+from mcdem.exporting import vtk, xyz  # noqa: E402, F401  for the tests
 
 SPACING = 0.02  # [m]
 SIDE = 3  # grains along each edge
@@ -88,3 +93,34 @@ def write_run(file, run, first=0, last=None):
             out[f"contacts/{name}/contact"] = np.concatenate([scan.contacts for scan in scans])
             out[f"contacts/{name}/offset"] = np.cumsum([0, *(len(scan.contacts) for scan in scans)])
     return file
+
+
+FIRST, SECOND = "replica_00000_mc_dem_packing_0", "replica_00001_mc_dem_packing_1"
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        kept = tempfile.TemporaryDirectory(prefix="mcdem-export-")
+        self.addCleanup(kept.cleanup)
+        self.folder = pathlib.Path(kept.name)
+        self.run, self.view = self.folder / "run", self.folder / "view"
+        self.run.mkdir()
+        self.view.mkdir()
+
+    def export(self, run, form, replicas=(), scans=(), parts=()):
+        """Writes the run, in segments of `parts` scans if given, and exports it; returns the number of files."""
+        first = 0
+        for number, count in enumerate(parts or [len(run[0].scans)]):
+            write_run(self.run / f"segment-{number:06}.h5", run, first, first + count)
+            first += count
+        return exporting.export(self.run, self.view, [form], replicas, scans)
+
+    def grid(self, name, replica=FIRST, scan=0):
+        """Tables of an exported file by their names in it."""
+        tables = {}
+        with h5py.File(self.view / replica / f"{name}_{scan:06}.hdf") as file:
+            file["VTKHDF"].visititems(lambda path, found: tables.update({path: found[:]} if isinstance(found, h5py.Dataset) else {}))
+        return tables
+
+    def points(self, *of, **more):
+        return {path.split("/")[1]: table for path, table in self.grid(*of, **more).items() if path.startswith("PointData/")}
