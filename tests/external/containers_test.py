@@ -6,7 +6,7 @@ import pathlib
 import shutil
 import sys
 
-from realities import execute, run_scene
+from realities import edges_of, execute, run_scene, write_data
 
 try:
     import h5py
@@ -70,14 +70,6 @@ def mcdem_run(mcdem, folder, shape):
         return size, particles["diameter"][:], found
 
 
-def write_data(path, shape, size, diameters, positions):
-    low, high = ((0, 0), size) if shape == "periodic" else ((-0.01, -0.01), size + 0.01)
-    lines = ["packing", "", f"{len(diameters)} atoms", "1 atom types", "", f"{low[0]} {high[0]:.17g} xlo xhi", f"{low[1]} {high[1]:.17g} ylo yhi",
-             "-0.01 0.9 zlo zhi", "", "Atoms", ""]
-    lines += [f"{n} 1 {d:.17g} 11.5 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}" for n, (d, p) in enumerate(zip(diameters, positions), 1)]
-    path.write_text("\n".join(lines) + "\n")
-
-
 def numbers_at(output, step, count):
     """The last of LAMMPS's lines with the step and this many numbers."""
     rows = [line.split() for line in output.splitlines()]
@@ -86,7 +78,8 @@ def numbers_at(output, step, count):
 
 def lammps(folder, shape, size, diameters, positions, plate, moving, resting, time_step):
     """Forces on the plate and (radial) on the side after these steps."""
-    write_data(folder / f"{shape}.data", shape, size, diameters, positions)
+    rows = [(d, *position) for d, position in zip(diameters, positions)]
+    write_data(folder / f"{shape}.data", rows, edges_of(shape, size), types=1, digits=17)
     output = execute("lmp", "containers.in", folder, {
         "shape": shape, "law": LAW, "wall_law": WALL_LAW, "size_x": size[0], "size_y": size[1], "start": plate, "time_step": time_step, "plate_speed": SPEED,
         "skin": 0.002, "moving": moving, "resting": resting, "drag": DRAG})
