@@ -54,6 +54,16 @@ class Xyz(Case):
             self.assertIn(f"ITEM: BOX BOUNDS {bounds}\n0 0.06\n0 0.06\n0 0.06\n", self.text(FIRST + ".contacts.dump"))
 
 
+class Choice(Case):
+    def test_what_is_not_there_is_refused(self):
+        run = make_run(scans=3)
+        run[0].scans[1].position = None
+        for chosen, problem in (({"scans": [99]}, "--scan: must be among the scans of .*, got 99"), ({"scans": [1]}, "has no positions to export"),
+                                ({"replicas": [7]}, "--replica: must be one of 0 to 0, got 7")):
+            with self.assertRaisesRegex(InputError, problem):
+                self.export(run, xyz, **chosen)
+
+
 class Names(Case):
     def test_the_label_is_in_shell_safe_characters(self):
         for label, name in (("mc_dem, friction=0.03 #2", "replica_00000_mc_dem_friction=0.03_2"), ("", "replica_00000"),
