@@ -5,6 +5,7 @@ import io
 import json
 import math
 import pathlib
+import sys
 import tempfile
 import unittest
 from unittest import mock
@@ -19,19 +20,10 @@ from mcdem.commands.command_line import run_command
 from mcdem.observe.estimate import Estimate
 from mcdem.results import ContactModel
 
-SCENE = """name = "small"
-[box]
-size_x = 0.06
-size_y = 0.06
-[packing]
-count = 30
-packing_fraction = 0.5
-[plate]
-start = 0.088
-end = 0.078
-[protocol]
-scans_per_stroke = 2
-"""
+sys.path.append(str(pathlib.Path(__file__).parents[1]))
+from small_scene import scene_text  # noqa: E402
+
+SCENE = scene_text("small", 0.0590)
 ROUNDS = (Round(np.array([0.5, 1.0, 1.5]), np.array([2.0, 3.25, math.nan])),
           Round(np.array([0.75, 1.0]), np.array([2.5, 0.00123]), 0.98, 0.004))
 FOUND = Calibration(0.98, 0.004, 2.5, True, 1.5, ROUNDS)
@@ -58,8 +50,6 @@ class Command(unittest.TestCase):
                 mock.patch.object(scene_calibration, "calibrate_scene", **result):
             try:
                 code = run_command(["calibrate", str(self.folder / "small.toml"), "--experiment", str(self.folder / "run"), *words])
-            except SystemExit as end:
-                code = end.code
             except mcdem.errors.InputError as error:
                 return 2, out.getvalue(), str(error)
         return code, out.getvalue(), messages.getvalue()
@@ -114,9 +104,6 @@ class Command(unittest.TestCase):
 
     def test_wrong_options_are_refused(self):
         for words, problem in ((["--model", "hertz"], '--model must be one of independent, .*, got "hertz"'),
-                               (["--rounds", "many"], "--rounds: must be a whole number from 1 to 10000, got many"),
-                               (["--batch", "2"], "--batch: must be a whole number from 3 to 10000, got 2"),
-                               (["--low=-1"], "--low: must be a number >= 0, got -1"),
                                (["--setting", "nope"], "--setting: must be one of .*run's: elastic_sphere; got nope"),
                                (["--experiment", str(self.folder / "nowhere")], "nowhere: must be a result folder or file"),
                                (["--out", str(self.folder / "small.toml")], "small.toml: is a file; give a folder for the results")):

@@ -16,7 +16,7 @@ import mcdem
 from mcdem import _engine
 from mcdem.calibration.calibrate import calibrate
 from mcdem.calibration.scene_calibration import Options, SceneCalibration, calibrate_scene, scene_of_model
-from mcdem.calibration.search import Bracket, Calibration, SearchOptions
+from mcdem.calibration.search import Calibration, SearchOptions
 from mcdem.errors import InputError, RunError
 from mcdem.observe.estimate import Estimate
 from mcdem.results import ContactModel, Failure, Run
@@ -78,10 +78,10 @@ class OneGrain(unittest.TestCase):
         self.assertEqual(notes, ["the reference has grains.friction = 0.5 (scene: 0.03): the calibrated value makes up for the difference; "
                                  "change the scene with --set if the reference is right"], "but not the modulus, which is searched for")
         with self.assertRaisesRegex(RunError, "E over the scene's = 0.6"):
-            calibrate_scene(scene, reference, dataclasses.replace(options, bracket=Bracket(0.5, 0.6)), nothing, nothing)
+            calibrate_scene(scene, reference, dataclasses.replace(options, search=SearchOptions(0.5, 0.6)), nothing, nothing)
         notes.clear()
         with self.assertRaises(RunError):
-            calibrate_scene(scene, reference, Options(bracket=Bracket(0.1, 0.2)), nothing, notes.append)
+            calibrate_scene(scene, reference, Options(search=SearchOptions(0.1, 0.2)), nothing, notes.append)
         self.assertIn("the reference has grains.friction = 0.5 (scene: 0.03), grains.youngs_modulus = 26000 (scene: 20000):", notes[0])
 
     def test_a_plate_that_stops_early_is_refused(self):
@@ -92,7 +92,7 @@ class OneGrain(unittest.TestCase):
 
     def test_a_value_out_of_range_is_refused(self):
         with self.assertRaisesRegex(InputError, "contact.gamma must be a number between 0 and 10, got 1[0-9]"):
-            calibrate_scene(self.scene(), self.reference(), Options(bracket=Bracket(9, 12)), nothing, nothing)
+            calibrate_scene(self.scene(), self.reference(), Options(search=SearchOptions(9, 12)), nothing, nothing)
 
     def test_the_function_for_users(self):
         run = mcdem.simulate(self.scene(batch__vary={"contact.model": ["independent", "elastic_sphere"]}))

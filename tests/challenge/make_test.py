@@ -4,10 +4,9 @@ import json
 import math
 import os
 import pathlib
+import sys
 import tempfile
 import unittest
-
-from small_scene import scene_text
 
 from mcdem import _engine as engine
 from mcdem.challenge.files import read_open_challenge
@@ -16,6 +15,9 @@ from mcdem.challenge.case_simulator import CaseSimulator
 from mcdem.challenge.plan import ChallengeSize, draw_challenge, model_of
 from mcdem.challenge.truth import open_truth, seal_of
 from mcdem.errors import InputError, RunError
+
+sys.path.append(str(pathlib.Path(__file__).parents[1]))
+from small_scene import scene_text  # noqa: E402
 
 # Very dense at the end: strongly interacting contacts have no static solution there.
 DENSE = scene_text("dense", 0.0490)

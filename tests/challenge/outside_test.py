@@ -2,17 +2,19 @@
 import csv
 import gzip
 import pathlib
+import sys
 import tempfile
 import unittest
 
 import numpy as np
-from small_scene import scene_text
-
 from mcdem._engine import CaseSimulator, outside_effects, scene_of_options
 from mcdem.experiment.experiment import Measurement
 from mcdem.experiment.from_run import experiment_from
 from mcdem.experiment.write import write_experiment
 from mcdem.results.engine_run import run_of
+
+sys.path.append(str(pathlib.Path(__file__).parents[1]))
+from small_scene import scene_text  # noqa: E402
 
 SCENE = scene_text("small", 0.0555)
 AMPLITUDES = {"vertical_stretch": 0.01, "plate_backlash": 1e-3, "soft_walls": 2.0, "box_error": 0.02}

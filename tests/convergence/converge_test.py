@@ -152,7 +152,7 @@ class Changes(unittest.TestCase):
     def test_of_the_packing_leave_the_first_copy(self):
         """Copies have their own jitter; new packings begin with that of the scene."""
         with tempfile.TemporaryDirectory() as folder:
-            simulator = engine.ConvergenceSimulator(pressed({"plate.speed": 2}), folder, replicas=2, jitter=1e-4, seed=3, device="")
+            simulator = Simulator(pressed({"plate.speed": 2}), folder, replicas=2, jitter=1e-4, seed=3, device="")
             simulator.find_grid()
             copies = simulator.observe({})
             self.assertTrue(simulator.draws_packings)

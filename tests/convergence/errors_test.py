@@ -5,7 +5,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from mcdem.convergence.convergence_types import RELATIVE, Limits
-from mcdem.convergence.errors import Baseline, RefinedRuns, cause_errors, errors_of, mean_and_error
+from mcdem.convergence.errors import Baseline, cause_errors, errors_of, mean_and_error
 from mcdem.observe.grid import Grid, cells_of
 from mcdem.observe.observables import observables
 from mcdem.observe.estimate import mean_over_replicas
@@ -24,13 +24,14 @@ class Made:
         random = np.random.default_rng(7)
         packing = random.normal(0, 0.1, (REPLICAS, len(CELLS)))
         self.base = packing + error
-        self.refined = RefinedRuns(remaining, [packing + random.normal(0, chaos, packing.shape) + error * left(part) for part in remaining])
+        self.remaining = remaining
+        self.refined = [packing + random.normal(0, chaos, packing.shape) + error * left(part) for part in remaining]
 
     def baseline(self):
         return Baseline(CELLS, self.base, Limits())
 
     def errors(self):
-        return errors_of(self.base, self.refined)
+        return errors_of(self.base, self.remaining, self.refined)
 
     def cells(self):
         return cause_errors("plate speed", self.baseline(), self.errors()).errors
@@ -52,7 +53,7 @@ class Errors(unittest.TestCase):
     def test_are_the_least_squares_of_the_steps(self):
         """Differences from the scene are the error times 1 - remaining."""
         made = Made([0.5, 0.25], 0.03, 0.01)
-        differences = np.array([(made.base - observed)[:, 3] for observed in made.refined.observed])
+        differences = np.array([(made.base - observed)[:, 3] for observed in made.refined])
         fitted = np.linalg.lstsq(np.array([[0.5], [0.75]]), differences, rcond=None)[0][0]
         errors = made.errors()
         self.assertAlmostEqual(errors.value[3], fitted.mean(), 14)
@@ -60,14 +61,14 @@ class Errors(unittest.TestCase):
 
     def test_a_failed_replica_is_left_out_alone(self):
         made = Made([0.5, 0.25], 0.03, 0.001)
-        made.refined.observed[1][3] = np.nan
+        made.refined[1][3] = np.nan
         errors = made.errors()
         self.assertTrue((np.abs(errors.value - 0.03) < 5 * errors.standard_error).all())
 
     def test_of_cells_without_values_are_left_out(self):
         made = Made([0.5], 0.03, 0.001)
         made.base[:, 1] = np.nan
-        made.refined.observed[0][1:, 2] = np.nan  # one replica has no standard error
+        made.refined[0][1:, 2] = np.nan  # one replica has no standard error
         cells = made.cells()
         self.assertEqual(len(cells), len(CELLS) - 1)
         self.assertEqual((cells[1].observable, cells[1].phase), (observables()[1].name, "load"))
@@ -90,7 +91,7 @@ class Limited(unittest.TestCase):
     def test_a_difference_below_the_resolution_is_allowed(self):
         """If copies hardly rearrange, their scatter is tiny."""
         made = Made([0.5], 1e-4, 0)
-        made.base[:], made.refined.observed[0][:] = 1 + 1e-4, 1 + 0.5e-4
+        made.base[:], made.refined[0][:] = 1 + 1e-4, 1 + 0.5e-4
         resolution = {one.name: one.resolution for one in observables()}
         for cell in made.cells():
             if not cell.is_relative:

@@ -6,7 +6,7 @@ import numpy as np
 from refinements_test import PARAMETERS
 
 from mcdem.convergence.convergence_types import Limits
-from mcdem.convergence.converge import Study
+from mcdem.convergence.converge import Study, converge
 from mcdem.observe.grid import Grid, cells_of, grid_from
 from mcdem.observe.observables import observables
 from mcdem.errors import InputError
@@ -89,6 +89,12 @@ class Studies(unittest.TestCase):
         simulated.lost = {(row, FIRST("displacement")) for row in range(8)}
         with self.assertRaisesRegex(InputError, "0 of 8 replicas"):
             self.study(simulated)
+
+    def test_arguments_are_checked_together(self):
+        with self.assertRaises(InputError) as refused:
+            converge(None, "/nowhere", replicas=7, force_limit=0, sd_limit=-1, jitter=2)
+        self.assertEqual(refused.exception.problems, ["replicas: must be 8 or more, got 7", "force_limit: must be above 0, got 0",
+                                                      "sd_limit: must be above 0, got -1", "jitter: must be between 0 and 1, got 2"])
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from small_run import AT_REST, STAGES, CommandCase, mcdem_command
 
 from mcdem import _engine
 from mcdem.experiment.experiment import Measurement
+from mcdem.experiment.instrument import Instrument, measured
 from mcdem.experiment.from_run import experiment_from
 from mcdem.experiment.read import read_experiment
 from mcdem.experiment.write import write_experiment
@@ -64,7 +65,8 @@ class FromRun(Made):
         names = ("frame", "cycle", "phase", "settled", "time", "plate_z", "wall_force", "kinetic_energy", "elastic_energy",
                  "coordination_number", "mean_force", "packing_fraction", "branch_length")
         for stated, more in ((Measurement(1e-4, 5e-5, 0.05, 0.02), NOISY), (Measurement(), {})):
-            seen = run_of(_engine.measured(_engine.read_replica("a", 1), asdict(stated) | more, 7)).recordings[0]
+            truth = run_of(_engine.read_replica("a", 1)).recordings[0]
+            seen = measured(truth, Instrument(stated, **more), 7)
             write_experiment("e", experiment_from(seen, stated))
             read = read_experiment(self.folder / "e").recording
             np.testing.assert_array_equal(read.diameter, seen.diameter)

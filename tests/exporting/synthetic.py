@@ -1,20 +1,23 @@
-"""A result file with all kinds of data (host/io/README.md), written by h5py."""
+"""Shared by the tests of exports: a result file with all kinds of data (host/io/README.md), written by h5py, and its export."""
+import pathlib
 import sys
+import tempfile
+import unittest
 
-try:
-    import h5py
-    import numpy as np
-except ImportError:
-    print("skipped: python3-h5py or python3-numpy is not installed")
-    sys.exit(77)
+import h5py
+import numpy as np
+
+sys.path.append(str(pathlib.Path(__file__).parents[1] / "results"))
+import written  # noqa: E402
+
+from mcdem import exporting  # noqa: E402
+from mcdem.exporting import vtk, xyz  # noqa: E402, F401  for the tests
 
 SPACING = 0.02  # [m]
 SIDE = 3  # grains along each edge
 GRAINS = SIDE ** 3
 PLATE = 5
 FLOOR = 4
-ROW = np.dtype([("frame", "i4"), ("cycle", "i4"), ("phase", "i1"), ("settled", "?"), ("time", "f8"), ("plate_z", "f8"),
-                ("wall_force", "f8", (6, 3)), ("coordination_number", "f8"), ("strain", "f8", (6,))])
 CONTACT = np.dtype([("grain", "i4"), ("partner", "i4"), ("point", "f8", (3,)), ("force", "f8", (3,)), ("overlap", "f8")])
 
 
@@ -32,7 +35,7 @@ class Scan:
         lattice = np.stack([grain % SIDE, grain // SIDE % SIDE, grain // SIDE ** 2], axis=1)
         self.position = (lattice + 0.5) * SPACING - [0, 0, 1e-4 * depth]
         self.rotation = np.stack([0.01 * grain, 0 * grain - 0.02 * depth, 0 * grain + 0.1 / (1 + replica)], axis=1)
-        self.row = np.zeros((), ROW)
+        self.row = np.zeros((), written.SCAN)
         self.row["frame"], self.row["phase"] = number, number >= half
         self.row["time"], self.row["plate_z"] = 0.1 * number, SIDE * SPACING - 1e-3 * depth
         self.row["wall_force"] = [[wall, number, 1 / (1 + wall)] for wall in range(6)]
@@ -74,14 +77,14 @@ def vectors(group, scans, what):
 def write_run(file, run, first=0, last=None):
     """Scans first .. last - 1 of every replica."""
     with h5py.File(file, "w") as out:
-        out.create_group("parameters").attrs.update(format=1, replicas=len(run))
+        written.write_head(out, len(run))
         for number, replica in enumerate(run):
             name, scans = f"replica_{number:05}", replica.scans[first:last]
             out[f"parameters/{name}"] = texts(list(replica.parameters.items()))
-            out[f"observables/{name}"] = np.array([scan.row for scan in scans], ROW)
+            out[f"observables/{name}"] = np.array([scan.row for scan in scans], written.SCAN)
             particles = out.create_group(f"particles/{name}")
-            particles.attrs["label"] = replica.label.encode()
-            particles.create_group("box").attrs.update(edges=replica.edges, shape=replica.shape.encode())
+            particles.attrs["label"] = np.bytes_(replica.label.encode())
+            particles.create_group("box").attrs.update(edges=replica.edges, shape=np.bytes_(replica.shape))
             particles["diameter"] = replica.diameter
             if replica.species is not None:
                 particles["species"], particles["species_names"] = replica.species, texts(replica.species_names)
@@ -90,3 +93,34 @@ def write_run(file, run, first=0, last=None):
             out[f"contacts/{name}/contact"] = np.concatenate([scan.contacts for scan in scans])
             out[f"contacts/{name}/offset"] = np.cumsum([0, *(len(scan.contacts) for scan in scans)])
     return file
+
+
+FIRST, SECOND = "replica_00000_mc_dem_packing_0", "replica_00001_mc_dem_packing_1"
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        kept = tempfile.TemporaryDirectory(prefix="mcdem-export-")
+        self.addCleanup(kept.cleanup)
+        self.folder = pathlib.Path(kept.name)
+        self.run, self.view = self.folder / "run", self.folder / "view"
+        self.run.mkdir()
+        self.view.mkdir()
+
+    def export(self, run, form, replicas=(), scans=(), parts=()):
+        """Writes the run, in segments of `parts` scans if given, and exports it; returns the number of files."""
+        first = 0
+        for number, count in enumerate(parts or [len(run[0].scans)]):
+            write_run(self.run / f"segment-{number:06}.h5", run, first, first + count)
+            first += count
+        return exporting.export(self.run, self.view, [form], replicas, scans)
+
+    def grid(self, name, replica=FIRST, scan=0):
+        """Tables of an exported file by their names in it."""
+        tables = {}
+        with h5py.File(self.view / replica / f"{name}_{scan:06}.hdf") as file:
+            file["VTKHDF"].visititems(lambda path, found: tables.update({path: found[:]} if isinstance(found, h5py.Dataset) else {}))
+        return tables
+
+    def points(self, *of, **more):
+        return {path.split("/")[1]: table for path, table in self.grid(*of, **more).items() if path.startswith("PointData/")}

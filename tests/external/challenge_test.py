@@ -112,7 +112,8 @@ def test_yade(folder):
 
 def answered(challenge, kind, effects, verdict, causes=(), limit=0.01):
     listed = [{"effect": e, "group": [e], "amplitude": a, "amplitude_error": 0.01, "at_limit": False, "confidence": p} for e, a, p in causes]
-    return challenge.case_of({"kind": kind, "code": "lammps", "effects": [{"name": n, "amplitude": a} for n, a in effects]},
+    truth = challenge.Reality("", kind, tuple(challenge.Hidden(*effect) for effect in effects), (), (), 0, 0, "lammps", 5, "stroke")
+    return challenge.case_of(truth,
                              {"verdict": verdict, "causes": listed, "shrink": {"fraction": 0.9, "confirmed": 0.95},
                               "detection_limits": [{"effect": n, "minimum_amplitude": limit} for n, _ in effects]})
 

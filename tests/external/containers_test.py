@@ -4,10 +4,9 @@ scan before: containers_test.py MCDEM FOLDER"""
 import math
 import pathlib
 import shutil
-import subprocess
 import sys
 
-from realities import execute
+from realities import edges_of, execute, run_scene, write_data
 
 try:
     import h5py
@@ -57,12 +56,8 @@ def mcdem_run(mcdem, folder, shape):
     """Size of the container, diameters, and (positions, plate, force on it, radial force on the side) of the last two
     scans of loading."""
     container, count = CASES[shape]
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{shape}.toml").write_text(SCENE.format(container=container, count=count, start=START, end=START - 0.01, speed=SPEED))
-    out = folder / f"{shape}_run"
-    shutil.rmtree(out, ignore_errors=True)
-    subprocess.run([mcdem, "run", folder / f"{shape}.toml", "--out", out, "--no-figures"], check=True, stdout=subprocess.DEVNULL)
-    with h5py.File(out / "run.h5") as run:
+    scene = SCENE.format(container=container, count=count, start=START, end=START - 0.01, speed=SPEED)
+    with h5py.File(run_scene(mcdem, folder, shape, scene)) as run:
         name = next(iter(run["observables"]))
         scans, particles, contacts = run["observables"][name][:], run["particles"][name], run["contacts"][name]
         size = particles["box"].attrs["edges"][:2]
@@ -75,23 +70,21 @@ def mcdem_run(mcdem, folder, shape):
         return size, particles["diameter"][:], found
 
 
-def write_data(path, shape, size, diameters, positions):
-    low, high = ((0, 0), size) if shape == "periodic" else ((-0.01, -0.01), size + 0.01)
-    lines = ["packing", "", f"{len(diameters)} atoms", "1 atom types", "", f"{low[0]} {high[0]:.17g} xlo xhi", f"{low[1]} {high[1]:.17g} ylo yhi",
-             "-0.01 0.9 zlo zhi", "", "Atoms", ""]
-    lines += [f"{n} 1 {d:.17g} 11.5 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}" for n, (d, p) in enumerate(zip(diameters, positions), 1)]
-    path.write_text("\n".join(lines) + "\n")
+def numbers_at(output, step, count):
+    """The last of LAMMPS's lines with the step and this many numbers."""
+    rows = [line.split() for line in output.splitlines()]
+    return [float(word) for word in [row for row in rows if len(row) == 1 + count and row[0] == str(step)][-1][1:]]
 
 
 def lammps(folder, shape, size, diameters, positions, plate, moving, resting, time_step):
     """Forces on the plate and (radial) on the side after these steps."""
-    write_data(folder / f"{shape}.data", shape, size, diameters, positions)
+    rows = [(d, *position) for d, position in zip(diameters, positions)]
+    write_data(folder / f"{shape}.data", rows, edges_of(shape, size), types=1, digits=17)
     output = execute("lmp", "containers.in", folder, {
         "shape": shape, "law": LAW, "wall_law": WALL_LAW, "size_x": size[0], "size_y": size[1], "start": plate, "time_step": time_step, "plate_speed": SPEED,
         "skin": 0.002, "moving": moving, "resting": resting, "drag": DRAG})
-    rows = [line.split() for line in output.splitlines()]
-    last = [row for row in rows if len(row) == 4 and row[0] == str(moving + resting)][-1]
-    return -float(last[2]), float(last[3])
+    _, plate_force, side_force = numbers_at(output, moving + resting, 3)
+    return -plate_force, side_force
 
 
 FRICTIONLESS = """[container]
@@ -128,11 +121,7 @@ precision = "double"
 
 def cell_run(mcdem, folder):
     """Initial lengths of the cell, diameters, and (positions, strain, stress) of the last three scans."""
-    (folder / "cell.toml").write_text(CELL)
-    out = folder / "cell_run"
-    shutil.rmtree(out, ignore_errors=True)
-    subprocess.run([mcdem, "run", folder / "cell.toml", "--out", out, "--no-figures"], check=True, stdout=subprocess.DEVNULL)
-    with h5py.File(out / "run.h5") as run:
+    with h5py.File(run_scene(mcdem, folder, "cell", CELL)) as run:
         name = next(iter(run["observables"]))
         scans, particles = run["observables"][name][:], run["particles"][name]
         assert scans["settled"].all(), "not at rest"
@@ -159,8 +148,7 @@ def lammps_cell(folder, edges, diameters, start, end, moving, resting):
     output = execute("lmp", "cell.in", folder, {
         "law": LAW, "time_step": 5e-5, "skin": 0.002, "moving": moving, "resting": resting, "drag": DRAG, "end_x": last[0],
         "end_y": last[1], "end_z": last[2], "shear": end[1][4] * edges[2]})
-    rows = [line.split() for line in output.splitlines()]
-    return numpy.array([row for row in rows if len(row) == 7 and row[0] == str(moving + resting)][-1][2:], float)
+    return numpy.array(numbers_at(output, moving + resting, 6)[1:])
 
 
 def compare_cell(mcdem, folder):
@@ -198,19 +186,14 @@ def lammps_lengths(folder, edges, diameters, scan, pressure, modulus):
     steps = 200000
     output = execute("lmp", "stress.in", folder, {"law": LAW, "time_step": 5e-5, "skin": 0.002, "pressure": pressure, "modulus": modulus,
                                                   "damping": 0.1, "steps": steps, "drag": DRAG})
-    rows = [line.split() for line in output.splitlines()]
-    last = numpy.array([row for row in rows if len(row) == 7 and row[0] == str(steps)][-1][1:], float)
+    last = numpy.array(numbers_at(output, steps, 6))
     return last[3:], last[:3]
 
 
 def compare_stress(mcdem, folder):
     """The volume at a pressure, starting from the packing at a lower one."""
-    (folder / "stress.toml").write_text(STRESS)
-    out = folder / "stress_run"
-    shutil.rmtree(out, ignore_errors=True)
-    subprocess.run([mcdem, "run", folder / "stress.toml", "--out", out, "--no-figures"], check=True, stdout=subprocess.DEVNULL)
     ratios = []
-    with h5py.File(out / "run.h5") as run:
+    with h5py.File(run_scene(mcdem, folder, "stress", STRESS)) as run:
         for name in run["observables"]:
             scans, particles = run["observables"][name][:], run["particles"][name]
             edges, diameters = particles["box"].attrs["edges"][:], particles["diameter"][:]

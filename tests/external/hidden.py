@@ -304,23 +304,23 @@ def find(name):
 
 
 def simulated(folder, case):
-    """The scans of a case of the challenge, as measured by its instrument, without noise."""
-    chance = random.Random(case["seed"])
-    arguments, further = {}, {"slower": case["slower"], "protocol": case["protocol"]}
-    modulus = cases.E * math.exp(case["modulus"])
-    for name, amplitude in case["effects"]:
-        entry = find(name)
-        arguments |= entry.arguments(case["code"], amplitude, chance) if entry.arguments else {}
-        further |= entry.reality(amplitude) if entry.reality else {}
-    if case["code"] == "lammps":
-        reality = cases.lammps(modulus=modulus, **arguments)
+    """The scans of a case of the challenge (challenge.Reality), as measured by its instrument, without noise."""
+    chance = random.Random(case.seed)
+    arguments, further = {}, {"slower": case.slower, "protocol": case.protocol}
+    shift = {nuisance.name: nuisance.amplitude for nuisance in case.nuisances}
+    for effect in case.effects:
+        entry = find(effect.name)
+        arguments |= entry.arguments(case.code, effect.amplitude, chance) if entry.arguments else {}
+        further |= entry.reality(effect.amplitude) if entry.reality else {}
+    if case.code == "lammps":
+        reality = cases.lammps(modulus=cases.E * math.exp(shift["modulus"]), **arguments)
     else:
         moduli = arguments.pop("moduli", (cases.E,))
-        reality = getattr(cases, case["code"])(moduli=tuple(m * math.exp(case["modulus"]) for m in moduli), **arguments)
-    scans = realities.simulate(folder, case["seed"], {**reality, **further})
-    for name, amplitude in case["effects"]:
-        if find(name).reading:
-            find(name).reading(scans, amplitude, chance)
+        reality = getattr(cases, case.code)(moduli=tuple(m * math.exp(shift["modulus"]) for m in moduli), **arguments)
+    scans = realities.simulate(folder, case.seed, {**reality, **further})
+    for effect in case.effects:
+        if find(effect.name).reading:
+            find(effect.name).reading(scans, effect.amplitude, chance)
     for scan in scans:
-        scan["height"] += case["strain_offset"]
+        scan["height"] += shift["strain_offset"]
     return scans

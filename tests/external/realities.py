@@ -37,6 +37,16 @@ def missing_programs(codes=("liggghts", "lammps")):
     return [PROGRAMS[code] for code in dict.fromkeys([*codes, "lammps"]) if not shutil.which(PROGRAMS[code])]
 
 
+def run_scene(mcdem, folder, name, text):
+    """The result file of a run of this scene by mcdem."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{name}.toml").write_text(text)
+    out = folder / f"{name}_run"
+    shutil.rmtree(out, ignore_errors=True)
+    subprocess.run([mcdem, "run", folder / f"{name}.toml", "--out", out, "--no-figures"], check=True, stdout=subprocess.DEVNULL)
+    return out / "run.h5"
+
+
 def execute(program, script, folder, variables):
     command = [program, "-log", "none", "-in", HERE / script, "-var", "folder", "."]
     for name, value in variables.items():
@@ -53,15 +63,18 @@ def run_command(command, folder, script):
     return done.stdout
 
 
-def write_data(path, rows, types=2, materials=None, container="box"):
+def edges_of(shape, size):
+    """Ends of LAMMPS's box along x and y, for write_data: beyond the walls, or at the period."""
+    beyond = 0 if shape == "periodic" else 0.01
+    return [(-beyond, length + beyond) for length in size]
+
+
+def write_data(path, rows, edges, types=2, materials=None, digits=10):
     """A data file for both codes, with diameter and centre of every grain. `materials`: atom types, default 1."""
-    beyond = 0 if container == "periodic" else 0.01
-    low, high = -beyond, WIDTHS[container] + beyond
-    lines = ["packing", "", f"{len(rows)} atoms", f"{types} atom types", "", f"{low} {high} xlo xhi", f"{low} {high} ylo yhi",
-             "-0.01 0.9 zlo zhi", "", "Atoms", ""]
-    materials = materials or [1] * len(rows)
-    lines += [f"{n} {m} {d:.10g} {DENSITY} {x:.10g} {y:.10g} {z:.10g}"
-              for n, (m, (d, x, y, z)) in enumerate(zip(materials, rows), 1)]
+    lines = ["packing", "", f"{len(rows)} atoms", f"{types} atom types", "",
+             *(f"{low:.17g} {high:.17g} {axis}lo {axis}hi" for axis, (low, high) in zip("xy", edges)), "-0.01 0.9 zlo zhi", "", "Atoms", ""]
+    lines += [f"{n} {m} {d:.{digits}g} {DENSITY} {x:.{digits}g} {y:.{digits}g} {z:.{digits}g}"
+              for n, (m, (d, x, y, z)) in enumerate(zip(materials or [1] * len(rows), rows), 1)]
     path.write_text("\n".join(lines) + "\n")
 
 
@@ -115,7 +128,7 @@ def loose_grains(seed, container, draw_sizes):
 
 def make_packing(folder, seed, modulus, container, sizes):
     width = WIDTHS[container]
-    write_data(folder / "loose.data", loose_grains(seed, container, sizes), container=container)
+    write_data(folder / "loose.data", loose_grains(seed, container, sizes), edges_of(container, (width, width)))
     execute("lmp", "packing.in", folder, {"container": container, "size_x": width, "size_y": width, "start": START,
                                           "time_step": TIME_STEP, "youngs_modulus": modulus})
     return [tuple(row[1:]) for row in max(read_dump(folder / "packing.dump").items())[1]]
@@ -358,7 +371,8 @@ def simulate(folder, seed, reality):
     if reality["program"] == "yade":
         dumped = by_yade(folder, reality["input"], packing, materials, {**variables, "gravity": pull, "moves": moves(reality), "smooth": reality["protocol"] == "paused"})
     else:
-        write_data(folder / "packing.data", packing, reality["types"], materials, container)
+        edges = edges_of(container, [WIDTHS[container]] * 2)
+        write_data(folder / "packing.data", packing, edges, reality["types"], materials)
         write_walls(folder, reality["tilt"])
         motion = {"motion": "stroke.in", **stroke_variables(reality)}
         if reality["highest_force"]:

@@ -2,10 +2,9 @@
 last scan, for pairs of the same and of different species: species_test.py MCDEM FOLDER"""
 import pathlib
 import shutil
-import subprocess
 import sys
 
-from realities import execute
+from realities import edges_of, execute, run_scene, write_data
 
 try:
     import h5py
@@ -56,12 +55,7 @@ precision = "double"
 
 def mcdem_run(mcdem, folder):
     """Positions, diameters, species and contacts between grains of the scan with the lowest plate."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "species.toml").write_text(SCENE)
-    out = folder / "species_run"
-    shutil.rmtree(out, ignore_errors=True)
-    subprocess.run([mcdem, "run", folder / "species.toml", "--out", out, "--no-figures"], check=True, stdout=subprocess.DEVNULL)
-    with h5py.File(out / "run.h5") as run:
+    with h5py.File(run_scene(mcdem, folder, "species", SCENE)) as run:
         name = next(iter(run["observables"]))
         particles, contacts = run["particles"][name], run["contacts"][name]
         rows = contacts["contact"][contacts["offset"][0]:contacts["offset"][1]]
@@ -71,11 +65,8 @@ def mcdem_run(mcdem, folder):
 
 def lammps(folder, positions, diameters, species):
     """The force of each pair of grains."""
-    lines = ["packing", "", f"{len(diameters)} atoms", "2 atom types", "", "-0.01 0.11 xlo xhi", "-0.01 0.11 ylo yhi", "-0.01 0.2 zlo zhi",
-             "", "Atoms", ""]
-    lines += [f"{n} {s + 1} {d:.17g} 11.5 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}"
-              for n, (s, d, p) in enumerate(zip(species, diameters, positions), 1)]
-    (folder / "species.data").write_text("\n".join(lines) + "\n")
+    rows = [(d, *position) for d, position in zip(diameters, positions)]
+    write_data(folder / "species.data", rows, edges_of("box", (0.1, 0.1)), materials=[s + 1 for s in species], digits=17)
     execute("lmp", "species.in", folder, {
         "pair_e": 2 / sum((1 - nu * nu) / modulus for modulus, nu in (SOFT, STIFF)), "soft_e": SOFT[0], "soft_nu": SOFT[1], "stiff_e": STIFF[0], "stiff_nu": STIFF[1]})
     rows = [line.split() for line in (folder / "species.dump").read_text().splitlines()]

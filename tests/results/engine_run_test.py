@@ -17,12 +17,6 @@ from mcdem.results.engine_run import run_of
 R = "replica_00000"
 
 
-def add_species_and_failure(run):
-    particles = run[f"particles/{R}"]
-    particles.attrs["failure_cause"], particles.attrs["failure_step"], particles.attrs["failure_grain"] = np.bytes_("why"), 10**12, 3
-    particles["species"], particles["species_names"] = [0, 1, 1, 0], np.array([b"soft", b"stiff"])
-
-
 @unittest.skipUnless(importlib.util.find_spec("mcdem._engine"), "the Python module was not built")
 class EngineRuns(unittest.TestCase):
     def setUp(self):
@@ -60,7 +54,7 @@ class EngineRuns(unittest.TestCase):
             self.assertEqual(one, other)
 
     def test_all_values_are_those_of_the_file(self):
-        self.change(add_species_and_failure)
+        self.change(written.add_species_and_failure)
         for shape in ContainerShape:
             self.change(lambda run: run[f"particles/{R}/box"].attrs.__setitem__("shape", np.bytes_(shape)))
             self.assert_same(run_of(mcdem.read(self.file)), read_run(self.file, contacts=True, positions=True))

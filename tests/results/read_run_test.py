@@ -81,11 +81,7 @@ class Values(Case):
         self.assertEqual([len(rotation) for rotation in one.scans.rotation], [0] * 3)
 
     def test_failures_and_species(self):
-        def change(run):
-            particles = run[f"particles/{R}"]
-            particles.attrs["failure_cause"], particles.attrs["failure_step"], particles.attrs["failure_grain"] = np.bytes_("why"), 10**12, 3
-            particles["species"], particles["species_names"] = [0, 1, 1, 0], np.array([b"soft", b"stiff"])
-        self.damage(change)
+        self.damage(written.add_species_and_failure)
         one = read_run(self.file).recordings[0]
         self.assertEqual(one.failure.text(), "step 1000000000000, grain 3: why")
         self.assertEqual((one.species.tolist(), one.species_names), ([0, 1, 1, 0], ("soft", "stiff")))

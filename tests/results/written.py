@@ -33,13 +33,17 @@ def contacts():
 def write_run(file, replicas=1):
     """Replicas with the scans and contacts above; positions were recorded in the first and last scan."""
     with h5py.File(file, "w", libver=("v110", "v110")) as run:
-        head = run.create_group("parameters")
-        for name, value in (("name", "made by hand"), ("program", "0.2.0 (test)"), ("device", "none"), ("precision", "float")):
-            head.attrs[name] = np.bytes_(value)
-        head.attrs["format"], head.attrs["replicas"] = 1, replicas
-        add(run, "parameters/scene", np.array([b'name = "made"']))
+        write_head(run, replicas)
         for number in range(replicas):
             write_replica(run, f"replica_{number:05}", number)
+
+
+def write_head(run, replicas):
+    head = run.create_group("parameters")
+    for name, value in (("name", "made by hand"), ("program", "0.2.0 (test)"), ("device", "none"), ("precision", "float")):
+        head.attrs[name] = np.bytes_(value)
+    head.attrs["format"], head.attrs["replicas"] = 1, replicas
+    add(run, "parameters/scene", np.array([b'name = "made"']))
 
 
 def add(run, name, values):
@@ -63,3 +67,10 @@ def write_replica(run, name, number):
     add(run, f"observables/{name}", scans())
     add(run, f"contacts/{name}/contact", contacts())
     add(run, f"contacts/{name}/offset", OFFSET)
+
+
+def add_species_and_failure(run):
+    """To the first replica."""
+    particles = run["particles/replica_00000"]
+    particles.attrs["failure_cause"], particles.attrs["failure_step"], particles.attrs["failure_grain"] = np.bytes_("why"), 10**12, 3
+    particles["species"], particles["species_names"] = [0, 1, 1, 0], np.array([b"soft", b"stiff"])

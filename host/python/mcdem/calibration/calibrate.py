@@ -1,9 +1,14 @@
-"""mcdem.calibrate: a calibration for users of Python."""
+"""mcdem.calibrate: a calibration for users of Python; the contents of calibration.json."""
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from .. import _engine
+from ..json_text import finite
 from ..look import Path
+from ..observe.reference import reference_setting
 from ..warn import warn_user
+from .scene_calibration import Options, SceneCalibration, calibrate_scene, calibrated_model
+from .search import SearchOptions
 
 if TYPE_CHECKING:
     from .._engine import Run, Scene
@@ -19,12 +24,22 @@ def calibrate(scene: "Scene", reference: "Run | Path", *, setting: str = "", dis
     chooses one of a run's. `low`, `high`: of gamma, or of E divided by the scene's E, as `tolerance`. `progress(fraction)` is called
     repeatedly. Raises ValueError, RuntimeError.
     """
-    from .. import _engine
-    from ..observe.reference import reference_setting
-    from .calibration_json import calibration_document
-    from .scene_calibration import Options, calibrate_scene, calibrated_model
-    from .search import Bracket, SearchOptions
-    options = Options(calibrated_model(model, "calibrate: model"), Bracket(low, high), SearchOptions(tolerance, batch, rounds), device)
+    options = Options(calibrated_model(model, "calibrate: model"), SearchOptions(low, high, tolerance, batch, rounds), device)
     chosen = reference_setting(reference, setting, discard)
     result = calibrate_scene(scene, chosen.replicas, options, progress or (lambda _: None), warn_user)
-    return calibration_document(result, scene.text, chosen.label, _engine.__version__)
+    return calibration_document(result, scene.text, chosen.label)
+
+
+def calibration_document(result: SceneCalibration, scene: str, reference: str) -> dict[str, Any]:
+    """`scene`: its text; `reference`: label of its setting. Numbers that are not finite are None."""
+    found, unit = result.found, result.unit
+    key = "youngs_modulus_Pa" if result.of_modulus else "gamma"
+    rounds = [{key: (unit * one.values).tolist(), "top_force_N": one.top_force.tolist(), "estimate": unit * one.root,
+               "standard_error": unit * one.standard_error} for one in found.rounds]
+    document: dict[str, Any] = finite({
+        "contact_model": result.model.value, "converged": found.converged, "replicas": result.replicas, "reference": reference,
+        "scene": scene, "program": _engine.__version__, "rounds": rounds, key: unit * found.value,
+        f"{key}_standard_error": unit * result.standard_error, f"{key}_standard_error_of_fit": unit * found.standard_error,
+        f"runs_away_at_{key}": unit * found.runs_away_at, "target_top_force_N": result.target.value,
+        "target_standard_error_N": result.target.standard_error, "displacement_m": result.displacement})
+    return document

@@ -1,12 +1,13 @@
 """The gamma with which a scene with model mc_dem has the reference's top force at its maximum compression; for a model without gamma the
 Young's modulus of the grains."""
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .. import _engine
 from ..errors import InputError
 from ..experiment.experiment import MATERIALS, other_materials
 from ..observe.estimate import Estimate, mean_over_replicas
@@ -15,9 +16,9 @@ from ..observe.replicas import MODEL, SEED, Replicas
 from ..observe.top_force import full_stroke, top_force_at
 from ..results.engine_run import run_of
 from ..results.names import ContactModel, all_names, parse
-from ..results.parameters import Parameters, keys_that_vary
+from ..results.parameters import keys_that_vary
 from ..results.recording import Floats
-from .search import Bracket, Calibration, SearchOptions, find_value
+from .search import Calibration, SearchOptions, find_value
 
 if TYPE_CHECKING:
     from .._engine import Batch, Scene
@@ -31,7 +32,6 @@ class Options:
     """`model`: for others than mc_dem E over that of the scene is searched for."""
 
     model: ContactModel = ContactModel.mc_dem
-    bracket: Bracket = Bracket()
     search: SearchOptions = SearchOptions()
     device: str = ""
 
@@ -82,39 +82,26 @@ def calibrate_scene(scene: "Scene", reference: Replicas, options: Options, progr
     A value counts as running away if at least half of its replicas do; otherwise the mean is over the others. Raises InputError,
     RunError.
     """
-    from .._engine import Batch, expect_plain_strokes
-    expect_plain_strokes(scene, "a calibration")
-    parameters = _parameters(scene)
-    _check(parameters)
+    _engine.expect_plain_strokes(scene, "a calibration")
+    if problems := [f"calibrate: {key} must be the same for all replicas: give one value with --set {key}=.."
+                    for key in keys_that_vary(scene.parameters) if key not in LEFT_ASIDE]:
+        raise InputError(problems)
     _note_other_materials(scene, reference, options.model, note)
+    parameters: dict[str, Any] = scene.parameters[0]
     levels = group_levels(reference)
     displacement = full_stroke(levels, reference)
-    _check_stroke(parameters[0], displacement)
+    _check_stroke(parameters["plate.start"] - parameters["plate.end"], displacement)
     target = mean_over_replicas(top_force_at(levels, reference, displacement).value)
-    modulus = 0.0 if options.model == ContactModel.mc_dem else float(parameters[0][MODULUS])
+    modulus = 0.0 if options.model == ContactModel.mc_dem else parameters[MODULUS]
     search = replace(options.search, what="E over the scene's") if modulus else options.search
-    trials = _Trials(Batch(scene_of_model(scene, options.model), options.device), parameters[0], modulus, displacement)
-    found = find_value(lambda values: trials.top_forces(values, lambda rounds: progress(rounds / search.rounds)), target.value,
-                       options.bracket, search)
+    trials = _Trials(_engine.Batch(scene_of_model(scene, options.model), options.device), parameters, modulus, displacement)
+    found = find_value(lambda values: trials.top_forces(values, lambda rounds: progress(rounds / search.rounds)), target.value, search)
     return SceneCalibration(found, target, trials.last, displacement, trials.packings, options.model, modulus)
 
 
 def scene_of_model(scene: "Scene", model: ContactModel) -> "Scene":
     """One replica with this contact model for each packing of the scene, of which only forces are recorded."""
     return scene.parse(scene.text, set={MODEL: model.value, GAMMA: 1, "output.positions": False, "output.contacts": False})
-
-
-def _parameters(scene: "Scene") -> list[Parameters]:
-    """Of each replica; empty where a key does not apply."""
-    return [{key: "" if value is None else str(value) for key, value in one.items()} for one in scene.parameters]
-
-
-def _check(parameters: Sequence[Parameters]) -> None:
-    """Raises InputError where more than the packing and the searched parameter varies."""
-    problems = [f"calibrate: {key} must be the same for all replicas: give one value with --set {key}=.."
-                for key in keys_that_vary(parameters) if key not in LEFT_ASIDE]
-    if problems:
-        raise InputError(problems)
 
 
 def _note_other_materials(scene: "Scene", reference: Replicas, model: ContactModel, note: Callable[[str], object]) -> None:
@@ -126,11 +113,10 @@ def _note_other_materials(scene: "Scene", reference: Replicas, model: ContactMod
              "reference is right")
 
 
-def _check_stroke(parameters: Parameters, displacement: float) -> None:
-    """Raises InputError if the plate of the scene cannot reach the greatest displacement of the reference [m]."""
+def _check_stroke(stroke: float, displacement: float) -> None:
+    """Raises InputError if the stroke of the scene does not reach the greatest displacement of the reference [m]."""
     if not math.isfinite(displacement):
         raise InputError("calibrate: the reference must have a scan, got none (all cycles discarded, or all replicas failed)")
-    stroke = float(parameters["plate.start"]) - float(parameters["plate.end"])
     if stroke < displacement - level_tolerance:
         raise InputError("calibrate: plate.start - plate.end must reach the reference's greatest displacement of "
                          f"{displacement * 1e3:.3f} mm, got {stroke * 1e3:.3f} mm")
@@ -139,11 +125,11 @@ def _check_stroke(parameters: Parameters, displacement: float) -> None:
 class _Trials:
     """Simulates all packings for several values of the parameter, all in one batch to fill the device."""
 
-    def __init__(self, batch: "Batch", parameters: Parameters, modulus: float, displacement: float) -> None:
+    def __init__(self, batch: "Batch", parameters: dict[str, Any], modulus: float, displacement: float) -> None:
         """`modulus`: of the scene [Pa], which the values multiply; 0: they are values of gamma."""
         self._batch, self._displacement, self._modulus = batch, displacement, modulus
-        self._strokes = 2 * int(parameters["protocol.cycles"]) - 1  # the last unloading is not evaluated
-        self._scans = self._strokes * int(parameters["protocol.scans_per_stroke"]) + (parameters["protocol.scan_at_start"] == "True")
+        self._strokes = 2 * parameters["protocol.cycles"] - 1  # the last unloading is not evaluated
+        self._scans = self._strokes * parameters["protocol.scans_per_stroke"] + parameters["protocol.scan_at_start"]
         self._rounds = 0
         self.packings = batch.packings
         self.last = Estimate()  # top force of the last value that did not run away [N]

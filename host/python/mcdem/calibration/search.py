@@ -23,13 +23,9 @@ TopForces = Callable[[Floats], Floats]  # mean top force at full stroke for each
 
 
 @dataclass(frozen=True)
-class Bracket:
-    low: float = 0.5
-    high: float = 1.5
-
-
-@dataclass(frozen=True)
 class SearchOptions:
+    low: float = 0.5  # ends of the bracket
+    high: float = 1.5
     tolerance: float = 0.005  # standard error of the value at which the search stops
     batch: int = 6  # number of values per round
     rounds: int = 8  # maximum
@@ -58,26 +54,28 @@ class Calibration:
     rounds: tuple[Round, ...]
 
 
-def find_value(top_forces: TopForces, target: float, bracket: Bracket, options: SearchOptions = SearchOptions()) -> Calibration:
+def find_value(top_forces: TopForces, target: float, options: SearchOptions = SearchOptions()) -> Calibration:
     """The value at which the top force is `target` [N].
 
     Raises InputError for an invalid bracket, target or option, RunError if the target is not reached within the bracket.
     """
-    _check(target, bracket, options)
-    search = _Search(target, bracket, options)
+    _check(target, options)
+    search = _Search(target, options)
     while len(search.rounds) < options.rounds and not search.converged:
-        search.add(search.values, _ask(top_forces, search.values))
+        forces = np.asarray(top_forces(search.values), float)
+        if len(forces) != len(search.values):
+            raise RunError(f"calibration: asked for {len(search.values)} top forces, got {len(forces)}")
+        search.add(search.values, forces)
     if math.isnan(search.value):
         raise search.out_of_reach()
     return Calibration(search.value, search.root.standard_error, search.root.slope, search.converged, search.runs_away_at,
                        tuple(search.rounds))
 
 
-def _check(target: float, bracket: Bracket, options: SearchOptions) -> None:
+def _check(target: float, options: SearchOptions) -> None:
     demands = ((math.isfinite(target) and target > 0, "target top force must be > 0 [N]", target),
-               (math.isfinite(bracket.low) and bracket.low >= 0, "low end of the bracket must be >= 0", bracket.low),
-               (math.isfinite(bracket.high) and bracket.high > bracket.low, "high end of the bracket must be above its low end",
-                bracket.high),
+               (math.isfinite(options.low) and options.low >= 0, "low end of the bracket must be >= 0", options.low),
+               (math.isfinite(options.high) and options.high > options.low, "high end of the bracket must be above its low end", options.high),
                (options.tolerance > 0, "tolerance must be > 0", options.tolerance),
                (options.batch >= 3, "batch must be at least 3 values per round", options.batch),
                (options.rounds >= 1, "rounds must be at least 1", options.rounds))
@@ -86,42 +84,19 @@ def _check(target: float, bracket: Bracket, options: SearchOptions) -> None:
         raise InputError(problems)
 
 
-def _ask(top_forces: TopForces, values: Floats) -> Floats:
-    forces = np.asarray(top_forces(values), float)
-    if len(forces) != len(values):
-        raise RunError(f"calibration: asked for {len(values)} top forces, got {len(forces)}")
-    return forces
-
-
 def _evenly(low: float, high: float, count: int) -> Floats:
     return np.asarray(low + (high - low) * np.arange(count) / (count - 1))
-
-
-@dataclass(frozen=True)
-class _Window:
-    """An interval of the search."""
-
-    centre: float
-    half_width: float
-
-    @property
-    def low(self) -> float:
-        return self.centre - self.half_width
-
-    @property
-    def high(self) -> float:
-        return self.centre + self.half_width
 
 
 class _Search:
     """The rounds so far, what follows from them, and the values to evaluate next."""
 
-    def __init__(self, target: float, bracket: Bracket, options: SearchOptions) -> None:
-        self._target, self._bracket, self._options = target, bracket, options
+    def __init__(self, target: float, options: SearchOptions) -> None:
+        self._target, self._options = target, options
         self._x: Floats = np.zeros(0)  # evaluated values without those that ran away, and above; in increasing order
         self._y: Floats = np.zeros(0)  # their top forces [N]
-        self._window: _Window | None = None
-        self.values = _evenly(bracket.low, bracket.high, options.batch)
+        self._window: tuple[float, float] | None = None  # centre and half width, once the target has been crossed
+        self.values = _evenly(options.low, options.high, options.batch)
         self.value, self.root, self.runs_away_at = math.nan, Crossing(), math.nan
         self.converged = False
         self.rounds = list[Round]()
@@ -135,14 +110,18 @@ class _Search:
             self.rounds.append(Round(values, forces))
             return
         middle = (below + above) / 2
-        window = self._window or _Window(middle, 1.5 * abs(above - below))
-        self.root = crossing_of_fit(self._x, self._y, window.low, window.high, self._target)
+        centre, half = self._window or (middle, 1.5 * abs(above - below))
+        low, high = centre - half, centre + half
+        self.root = crossing_of_fit(self._x, self._y, low, high, self._target)
         self.value = middle if math.isnan(self.root.x) else self.root.x
         self.rounds.append(Round(values, forces, self.value, self.root.standard_error))
-        inside = int(((self._x >= window.low) & (self._x <= window.high)).sum())
+        inside = int(((self._x >= low) & (self._x <= high)).sum())
         self.converged = self.root.standard_error <= self._options.tolerance and inside >= POINTS_FOR_AN_ERROR
-        self._window = self._narrowed(window) if self._window else window
-        self.values = _evenly(max(self._window.low, self._bracket.low), self._highest_safe(min(self._window.high, self._bracket.high)),
+        if self._window:  # half as wide as before, but wide enough that the slope is significant
+            least = half if math.isnan(self.root.x) else np.fmin(5 * self.root.standard_error, half)
+            centre, half = self.value, float(np.fmax(half / 2, least))
+        self._window = centre, half
+        self.values = _evenly(max(centre - half, self._options.low), self._highest_safe(min(centre + half, self._options.high)),
                               self._options.batch)
 
     def _collect(self, values: Floats, forces: Floats) -> None:
@@ -159,12 +138,6 @@ class _Search:
         x = [math.nan, *self._x.tolist(), math.nan]
         return x[lower], x[lower + 1]
 
-    def _narrowed(self, window: _Window) -> _Window:
-        """Half as wide, but wide enough that the slope is significant."""
-        if math.isnan(self.root.x):
-            return _Window(self.value, window.half_width)
-        return _Window(self.root.x, float(np.fmax(window.half_width / 2, np.fmin(5 * self.root.standard_error, window.half_width))))
-
     def _highest_safe(self, high: float) -> float:
         """End of the interval below the lowest runaway, at some distance from it."""
         if math.isnan(self.runs_away_at) or not len(self._x):
@@ -173,7 +146,7 @@ class _Search:
 
     def _exploring(self) -> Floats:
         """Values in the part of the bracket below the lowest runaway, while the target has not been crossed."""
-        low, high = float(self._x[-1]) if len(self._x) else self._bracket.low, self.runs_away_at
+        low, high = float(self._x[-1]) if len(self._x) else self._options.low, self.runs_away_at
         is_open = not math.isnan(self._neighbours()[0]) if len(self._x) else high > low
         if not (is_open and high - low > self._options.tolerance):
             raise self.out_of_reach()
@@ -190,6 +163,6 @@ class _Search:
                             f"{target}; give a bracket that starts lower, or check the modulus")
         if math.isnan(self.runs_away_at):
             return RunError(f"calibration: the top force comes only to {self._y[-1]:.4g} N at {what} = {self._x[-1]:.4g}, the target is "
-                            f"{target}; give a bracket that ends higher than {self._bracket.high:.4g}")
+                            f"{target}; give a bracket that ends higher than {self._options.high:.4g}")
         return RunError(f"calibration: the packing runs away at {what} = {self.runs_away_at:.4g} before it comes to the target of {target} "
                         f"({self._y[-1]:.4g} N at {what} = {self._x[-1]:.4g}); no {what} gives Rtop = 1 here")

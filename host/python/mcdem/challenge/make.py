@@ -106,11 +106,12 @@ class _Making:
         if self._sealed is None:
             self._weaken_diverging()
         seal = self._seal_all()
-        before = count - len(missing)
-        for first, batch in self._batches(missing):
-            failures = self._simulate(batch, False, before + first, count, PART_OF_TRIES, 1 - PART_OF_TRIES)
-            for k, (number, failure) in enumerate(zip(batch, failures, strict=True)):
-                self._write(k, number, failure)
+
+        def progress(fraction: float) -> None:
+            self._progress(PART_OF_TRIES + (1 - PART_OF_TRIES) * (1 - (1 - fraction) * len(missing) / count))
+
+        for place, number, failure in self._simulated(missing, False, progress):
+            self._write(place, number, failure)
         return seal
 
     def _is_complete(self, number: int) -> bool:
@@ -120,29 +121,23 @@ class _Making:
     def _folder(self, number: int) -> str:
         return os.path.join(self._options.folder, self._challenge.cases[number].folder)
 
-    def _batches(self, numbers: Sequence[int]) -> Iterator[tuple[int, Sequence[int]]]:
-        """Index of the first case of each batch, and the numbers of its cases."""
-        if numbers:
-            size = self._simulator.at_once()
-            for first in range(0, len(numbers), size):
-                yield first, numbers[first:first + size]
-
-    def _simulate(self, numbers: Sequence[int], loading: bool, before: int, of: int, begin: float, part: float) -> list[str]:
-        """Why each case failed. The progress of `of` cases is from `begin` to `begin + part`; `before` of them are done."""
-        cases = [self._challenge.cases[number] for number in numbers]
-        return self._simulator.simulate(
-            cases, loading, lambda fraction: self._progress(begin + part * (before + fraction * len(cases)) / of))
+    def _simulated(self, numbers: Sequence[int], loading: bool, progress: Progress) -> Iterator[tuple[int, int, str]]:
+        """Place in its batch, number, and why it failed, of each case: while its batch is the last one that was simulated."""
+        size = self._simulator.at_once() if numbers else 1
+        for first in range(0, len(numbers), size):
+            batch = numbers[first:first + size]
+            cases = [self._challenge.cases[number] for number in batch]
+            failures = self._simulator.simulate(
+                cases, loading, lambda fraction: progress((first + fraction * len(batch)) / len(numbers)))
+            yield from zip(range(len(batch)), batch, failures, strict=True)
 
     def _weaken_diverging(self) -> None:
         """Dense packings with interacting contacts have no static solution above some amplitude. Such cases are loaded again with weaker
         effects before the truth is sealed."""
-        tried = all_tried = [number for number, case in enumerate(self._challenge.cases) if case.effects]
+        tried = [number for number, case in enumerate(self._challenge.cases) if case.effects]
         for tries in range(MAX_TRIES + 1):
-            failed = list[int]()
-            for first, batch in self._batches(tried):
-                begin, part = (PART_OF_TRIES, 0.0) if tries else (0.0, PART_OF_TRIES)
-                failures = self._simulate(batch, True, first, len(all_tried), begin, part)
-                failed += [number for number, failure in zip(batch, failures, strict=True) if failure]
+            failed = [number for _, number, failure in self._simulated(
+                tried, True, lambda fraction: self._progress(PART_OF_TRIES * (1 if tries else fraction))) if failure]
             if not failed:
                 return
             self._challenge, tried = _changed(self._challenge, failed, WEAKER), failed
@@ -171,10 +166,10 @@ class _Making:
             if is_there(folder):
                 raise InputError(f"{folder}: is there without a challenge.json beside it, and is not replaced: give another folder (--out)")
 
-    def _write(self, k: int, number: int, failure: str) -> None:
-        """The k-th case of those that were simulated last."""
+    def _write(self, place: int, number: int, failure: str) -> None:
+        """The case at this place of those that were simulated last."""
         if failure:
             raise RunError(f"{self._challenge.cases[number].folder}: its simulation failed at {failure}")
-        recording, folder = self._simulator.measured(k), self._folder(number)
+        recording, folder = self._simulator.measured(place), self._folder(number)
         remove_temporaries(folder)
         write_experiment(folder, experiment_from(recording, self._options.measurement), gzip=True)

@@ -142,14 +142,18 @@ class ChallengeWork:
         """The library's simulations: other packings of the same kind, measured as the first case."""
         options = self._options
         return Simulations.of_others(
-            self._scene, self._experiment(self._cases[0]), options.library_packings, self._folder / "simulations",
+            self._scene, self._first_experiment, options.library_packings, self._folder / "simulations",
             candidates=list(options.candidates), replicates=options.library_replicates, pairs=options.library_pairs, seed=options.seed,
             device=options.device)
 
     @cached_property
+    def _first_experiment(self) -> Experiment:
+        """Its measurement determines the library."""
+        return self._experiment(self._cases[0])
+
+    @cached_property
     def _first(self) -> Simulations:
-        """Those of the first case, whose measurement determines the library."""
-        return self._simulations(self._cases[0], self._how(()))
+        return self._simulations(self._first_experiment, self._how(()))
 
     def _work_of_library(self) -> float:
         """Number of simulations, for the progress."""
@@ -181,8 +185,8 @@ class ChallengeWork:
         return DiagnoseOptions(candidates=candidates, replicates=options.replicates, confirmations=options.confirmations,
                                paper_metrics=False, seed=options.seed, library=self._folder / "library.json")  # metrics are not scored
 
-    def _simulations(self, case: OpenCase, how: DiagnoseOptions) -> Simulations:
-        return make_simulations(self._scene, [self._experiment(case)], self._folder / "simulations", how, self._options.device)
+    def _simulations(self, experiment: Experiment, how: DiagnoseOptions) -> Simulations:
+        return make_simulations(self._scene, [experiment], self._folder / "simulations", how, self._options.device)
 
     def _diagnose(self, case: OpenCase, library: Library, progress: Progress) -> None:
         folder = self._folder
@@ -199,7 +203,7 @@ class ChallengeWork:
 
         how = self._how([effect.name for effect in library.effects if case.candidates is None or effect.name in case.candidates])
         try:
-            text = diagnosis_json(diagnose(self._scene, self._simulations(case, how), how, Keeper()))
+            text = diagnosis_json(diagnose(self._scene, self._simulations(self._experiment(case), how), how, Keeper()))
         except InputError as error:
             text = json.dumps({"problem": str(error)}, indent=1, ensure_ascii=False) + "\n"
             self._tell(f"{case.folder}: could not be diagnosed: {error}")

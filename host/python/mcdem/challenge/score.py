@@ -110,24 +110,14 @@ def _others_of(file: str, library: Library) -> Others:
     return [ablated_findings(evidence, ablation) for ablation in ABLATIONS], [method.answer(evidence) for method in SIMPLER_METHODS]
 
 
-_of_library: functools.partial[Others]  # in the processes that work
+def _end_with_parent() -> None:
+    """Ends this process with its parent, also if that is killed."""
+    def end_after(process: int) -> None:
+        wait([process])
+        os._exit(1)
 
-
-def _begin_work(library: Library) -> None:
-    """Ends the process with its parent, also if that is killed."""
-    global _of_library
-    _of_library = functools.partial(_others_of, library=library)
     if parent := multiprocessing.parent_process():
-        threading.Thread(target=_end_after, args=(parent.sentinel,), daemon=True).start()
-
-
-def _end_after(process: int) -> None:
-    wait([process])
-    os._exit(1)
-
-
-def _work(file: str) -> Others:
-    return _of_library(file)
+        threading.Thread(target=end_after, args=(parent.sentinel,), daemon=True).start()
 
 
 def _try_other_arms(open: OpenChallenge, results: ChallengeResults, folder: Path, on_progress: Callable[[float], object]) -> list[Others]:
@@ -136,8 +126,9 @@ def _try_other_arms(open: OpenChallenge, results: ChallengeResults, folder: Path
     files = {k: evidence_file(folder, case) for k, case in enumerate(open.cases) if not results.cases[k].problem}
     others = [nothing] * len(open.cases)
     try:
-        with ProcessPoolExecutor(len(os.sched_getaffinity(0)), multiprocessing.get_context("fork"), _begin_work, (results.library,)) as pool:
-            for done, (k, found) in enumerate(zip(files, pool.map(_work, files.values())), 1):
+        with ProcessPoolExecutor(len(os.sched_getaffinity(0)), multiprocessing.get_context("fork"), _end_with_parent) as pool:
+            work = functools.partial(_others_of, library=results.library)
+            for done, (k, found) in enumerate(zip(files, pool.map(work, files.values())), 1):
                 others[k] = found
                 on_progress(done / len(files))
     except BrokenProcessPool as error:

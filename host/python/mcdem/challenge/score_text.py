@@ -27,14 +27,10 @@ def _share_row(name: str, arm: ArmScore, merit: str, required: str = "", is_met:
     return [name, str(second), required, _met(is_met) if required and second.of > 0 else "", str(getattr(arm.first, merit))]
 
 
-def _at_most(name: str, arm: ArmScore, merit: str) -> list[str]:
-    bar = getattr(Bars(), merit)
-    return _share_row(name, arm, merit, f"at most {100 * bar:.0f} %", getattr(arm.second, merit).value() <= bar)
-
-
-def _at_least(name: str, arm: ArmScore, merit: str) -> list[str]:
-    bar = getattr(Bars(), merit)
-    return _share_row(name, arm, merit, f"at least {100 * bar:.0f} %", getattr(arm.second, merit).value() >= bar)
+def _barred_row(name: str, arm: ArmScore, merit: str, is_upper: bool) -> list[str]:
+    """Of a share that has a target."""
+    bar, share = getattr(Bars(), merit), getattr(arm.second, merit).value()
+    return _share_row(name, arm, merit, f"at {'most' if is_upper else 'least'} {100 * bar:.0f} %", share <= bar if is_upper else share >= bar)
 
 
 def _number_row(name: str, first: float, second: float, required: str, is_met: bool) -> list[str]:
@@ -63,15 +59,15 @@ def table_of_merits(score: ChallengeScore) -> TextTable:
     return TextTable(
         [Column("figure of merit", "left"), Column("scored half", "left"), Column("required", "left"), Column("met"),
          Column("half used to set limits", "left")],
-        [_at_most("no effect: a gap is claimed", arm, "false_alarms"),
+        [_barred_row("no effect: a gap is claimed", arm, "false_alarms", True),
          _share_row("one effect: detected", arm, "detected"),
          _share_row("one effect, 1.5 limits or more: detected", arm, "detected_clear"),
-         _at_least(".. of these detected: named first", arm, "led_by_truth"),
-         _at_least(".. of these detected: in the group named", arm, "truth_in_group"),
+         _barred_row(".. of these detected: named first", arm, "led_by_truth", False),
+         _barred_row(".. of these detected: in the group named", arm, "truth_in_group", False),
          _number_row(".. of these detected: mean size of the group", first.group_size, second.group_size, f"at most {group_size}",
                      second.group_size <= group_size),
-         _at_most("effect outside the library: an effect is named", arm, "named_unknown"),
-         _at_most("parameter far outside its uncertainty: an effect is named", arm, "named_outside_prior"),
+         _barred_row("effect outside the library: an effect is named", arm, "named_unknown", True),
+         _barred_row("parameter far outside its uncertainty: an effect is named", arm, "named_outside_prior", True),
          _share_row(".. : verdict calibration_suspect", arm, "suspected"),
          _share_row("two effects: named first is one of them", arm, "pair_led"),
          _share_row("two effects: both named", arm, "pair_found"),

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 from ..parts import interruptible
 from ..program import say
 from ..progress import Progress
-from .command_line import at_least_zero, output_path, whole_in
+from .command_line import add_numbers, at_least_zero, given, output_path, whole_in
 from .scene_options import add_device_option, add_scene_options, read_scene
 from .sources import add_reference_options
 
 if TYPE_CHECKING:
-    from .._engine import Scene
-    from ..calibration.scene_calibration import Options, SceneCalibration
+    from ..calibration.scene_calibration import SceneCalibration
     from ..observe.estimate import Estimate
-    from ..observe.replicas import Replicas
 
 EPILOG = """\
 The scene gives packings, materials and protocol; its contact.model and contact.gamma are not used.
@@ -26,6 +24,15 @@ Examples (DIR: your experiment folder):
   mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --model hyperelastic_sphere"""
 
 
+SEARCH = {
+    "low": (0.5, "VALUE", at_least_zero, "Lower end of the search: gamma, or E divided by the scene's E"),
+    "high": (1.5, "VALUE", at_least_zero, "Upper end of the search: gamma, or E divided by the scene's E"),
+    "tolerance": (0.005, "ERROR", at_least_zero, "Stop at this standard error of gamma, or of E divided by the scene's E"),
+    "batch": (6, "N", whole_in(3, 10_000), "Number of values that are simulated together in one round"),
+    "rounds": (8, "N", whole_in(1, 10_000), "Maximum number of rounds"),
+}
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     add_reference_options(parser, "--experiment", "Experiment folder or run whose mean top force at maximum compression is the target",
@@ -34,53 +41,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="mc_dem: fit gamma; any other contact model: fit Young's modulus of the grains")
     parser.add_argument("--out", metavar="DIR", type=output_path, help="Folder for calibration.json")
     add_device_option(parser)
-    parser.add_argument("--low", metavar="VALUE", type=at_least_zero, default=0.5,
-                        help="Lower end of the search: gamma, or E divided by the scene's E")
-    parser.add_argument("--high", metavar="VALUE", type=at_least_zero, default=1.5,
-                        help="Upper end of the search: gamma, or E divided by the scene's E")
-    parser.add_argument("--tolerance", metavar="ERROR", type=at_least_zero, default=0.005,
-                        help="Stop at this standard error of gamma, or of E divided by the scene's E")
-    parser.add_argument("--batch", metavar="N", type=whole_in(3, 10_000), default=6,
-                        help="Number of values that are simulated together in one round")
-    parser.add_argument("--rounds", metavar="N", type=whole_in(1, 10_000), default=8, help="Maximum number of rounds")
+    add_numbers(parser, SEARCH)
 
 
 def run(options: argparse.Namespace) -> int:
-    from .. import _engine
-    from ..calibration.calibration_json import calibration_document, calibration_json
+    from ..calibration.calibrate import calibration_document
+    from ..calibration.scene_calibration import Options, calibrate_scene, calibrated_model
+    from ..calibration.search import SearchOptions
+    from ..json_text import json_text
     from ..observe.reference import load_reference
     from ..outputs import CALIBRATION, expect_replaceable, output_folder, replace_own
-    wanted = _calibration_options(options)
+    wanted = Options(calibrated_model(options.model, "--model"), SearchOptions(**given(options, SEARCH)), options.device)
     reference = load_reference(options.experiment, options.setting, options.discard)
     scene = read_scene(options)
     with contextlib.ExitStack() as stack:
         if options.out:
             file = stack.enter_context(output_folder(options.out)) / "calibration.json"
             expect_replaceable(file, CALIBRATION)
-        result = _calibrate(scene, reference.replicas, wanted)
+        with interruptible("nothing is kept"), Progress() as progress:
+            def note(text: str) -> None:
+                progress.clear()
+                say(text)
+
+            result = calibrate_scene(scene, reference.replicas, wanted, progress.show, note)
         print(_text(result))
         if options.out:
-            document = calibration_document(result, scene.text, reference.label, _engine.__version__)
-            replace_own(file, CALIBRATION, calibration_json(document).encode())
+            document = calibration_document(result, scene.text, reference.label)
+            replace_own(file, CALIBRATION, json_text(document, sort_keys=True).encode())
             print(f"wrote {file}")
     return 0
-
-
-def _calibration_options(options: argparse.Namespace) -> "Options":
-    from ..calibration.scene_calibration import Options, calibrated_model
-    from ..calibration.search import Bracket, SearchOptions
-    return Options(calibrated_model(options.model, "--model"), Bracket(options.low, options.high),
-                   SearchOptions(options.tolerance, options.batch, options.rounds), options.device)
-
-
-def _calibrate(scene: "Scene", reference: "Replicas", options: "Options") -> "SceneCalibration":
-    from ..calibration.scene_calibration import calibrate_scene
-    with interruptible("nothing is kept"), Progress() as progress:
-        def note(text: str) -> None:
-            progress.clear()
-            say(text)
-
-        return calibrate_scene(scene, reference, options, progress.show, note)
 
 
 def _text(result: "SceneCalibration") -> str:
@@ -98,15 +87,11 @@ def _text(result: "SceneCalibration") -> str:
              f"{name} = {_with_error(found, 4)}{in_kPa}"
              + ("" if result.found.converged else " (tolerance not reached: raise --rounds, or use more replicas)")]
     if not result.knows_scatter:
-        lines.append(f"the error leaves out the scatter between packings, because {_single(result)} a single packing; this is correct only "
-                     "if both are the same packing")
+        single = ("the reference has" if math.isfinite(result.simulated.standard_error) else
+                  "the scene has" if math.isfinite(result.target.standard_error) else "scene and reference each have")
+        lines.append(f"the error leaves out the scatter between packings, because {single} a single packing; this is correct only if both "
+                     "are the same packing")
     return "\n".join([to_text(table), *lines])
-
-
-def _single(result: "SceneCalibration") -> str:
-    if math.isfinite(result.simulated.standard_error):
-        return "the reference has"
-    return "the scene has" if math.isfinite(result.target.standard_error) else "scene and reference each have"
 
 
 def _with_error(estimate: "Estimate", decimals: int) -> str:

@@ -1,11 +1,10 @@
 """mcdem challenge make: simulated experiments with hidden effects."""
 import argparse
 import os
-import re
 
 from ..parts import interruptible
 from ..progress import Progress
-from .command_line import at_least_zero, names, number_in, output_path, whole_in
+from .command_line import add_numbers, any_seed, any_whole, at_least_zero, given, names, number_in, output_path
 from .scene_options import add_device_option, add_scene_options, read_scene
 
 EPILOG = """\
@@ -13,17 +12,15 @@ The same command continues where an interrupted one stopped.
 Example:
   mcdem challenge make scenes/challenge.toml --out out/challenge --truth out/truth.json"""
 
-# Option -> default, help.
 SIZES = {
-    "none": (60, "Number of experiments without an effect"),
-    "per_effect": (8, "Number of experiments with each effect of the library"),
-    "pairs": (20, "Number of experiments with two effects of the library"),
-    "unknown": (40, "Number of experiments with an effect that the library does not have"),
-    "outside": (20, "Number of experiments with modulus or strain zero far outside their uncertainty"),
-    "packings": (24, "Number of different packings; even"),
+    "none": (60, "N", any_whole, "Number of experiments without an effect"),  # the plan reports all that are too small together
+    "per_effect": (8, "N", any_whole, "Number of experiments with each effect of the library"),
+    "pairs": (20, "N", any_whole, "Number of experiments with two effects of the library"),
+    "unknown": (40, "N", any_whole, "Number of experiments with an effect that the library does not have"),
+    "outside": (20, "N", any_whole, "Number of experiments with modulus or strain zero far outside their uncertainty"),
+    "packings": (24, "N", any_whole, "Number of different packings; even"),
 }
-# Option -> default, unit, check, help; the fields of Measurement.
-MEASUREMENT = {
+MEASUREMENT = {  # the fields of Measurement
     "position_error": (1e-4, "M", at_least_zero, "Standard error of each coordinate of a centre [m]"),
     "diameter_error": (2e-5, "M", at_least_zero, "Standard error of a diameter [m]"),
     "force_error": (0.05, "FRACTION", number_in(0, 1), "Relative standard error of a contact force"),
@@ -35,26 +32,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     parser.add_argument("--out", metavar="DIR", type=output_path, required=True, help="Folder for the challenge")
     parser.add_argument("--truth", metavar="FILE", type=output_path, help="File for the truth; default: DIR/truth.json")
-    parser.add_argument("--seed", metavar="S", type=whole_in(0, 2**64 - 1),
+    parser.add_argument("--seed", metavar="S", type=any_seed,
                         help="Seed of all draws; default: drawn at random and not shown")
     parser.add_argument("--effects", metavar="NAME,..", type=names, action="extend", default=[],
                         help="Effects to hide; default: a dozen of all kinds")
-    for name, (number, text) in SIZES.items():
-        parser.add_argument(_option(name), metavar="N", type=_whole, default=number, help=text)
-    for name, (value, unit, check, text) in MEASUREMENT.items():
-        parser.add_argument(_option(name), metavar=unit, type=check, default=value, help=text)
+    add_numbers(parser, SIZES | MEASUREMENT)
     add_device_option(parser)
-
-
-def _whole(text: str) -> int:
-    """A whole number; the plan reports all that are too small together."""
-    if not re.fullmatch(r"[+-]?\d{1,9}", text, re.ASCII):
-        raise argparse.ArgumentTypeError(f"must be a whole number, got {text}")
-    return int(text)
-
-
-def _option(name: str) -> str:
-    return "--" + name.replace("_", "-")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -64,8 +47,7 @@ def run(options: argparse.Namespace) -> int:
     scene = read_scene(options)
     truth = options.truth or os.path.join(options.out, "truth.json")
     wanted = Options(folder=options.out, truth=truth, seed=options.seed, effects=options.effects, device=options.device,
-                     size=ChallengeSize(*(getattr(options, name) for name in SIZES)),
-                     measurement=Measurement(**{name: getattr(options, name) for name in MEASUREMENT}))
+                     size=ChallengeSize(*given(options, SIZES).values()), measurement=Measurement(**given(options, MEASUREMENT)))
     with interruptible(), Progress() as progress:
         seal = make_challenge(scene, wanted, progress.show)
     print(f"{options.out}: the challenge is made\ntruth: {truth}\nits SHA-256: {seal}")

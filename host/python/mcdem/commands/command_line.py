@@ -1,13 +1,13 @@
 """Parses the command line: `mcdem WORD OPTION..`."""
 import argparse
 import importlib
-import math
 import os
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NoReturn
 
 from ..command import ask, program_path
+from ..problems import to_number
 from ..program import say
 from . import COMMANDS, PROGRAM_COMMANDS
 
@@ -38,41 +38,22 @@ class Parser(argparse.ArgumentParser):
         raise SystemExit(BAD_INPUT)
 
 
-def at_least_zero(text: str) -> float:
-    """A finite number >= 0."""
-    try:
-        value = float(text.replace("_", "?"))
-    except ValueError:
-        value = math.nan
-    if not (math.isfinite(value) and value >= 0):
-        raise argparse.ArgumentTypeError(f"must be a number >= 0, got {text}")
-    return value
+def number(accepts: Callable[[float], bool], what: str) -> Callable[[str], float]:
+    """Converts a finite number that `accepts` takes; others must be `what`."""
+    def convert(text: str) -> float:
+        value = to_number(text)
+        if value is None or not accepts(value):
+            raise argparse.ArgumentTypeError(f"must be {what}, got {text}")
+        return value
+
+    return convert
 
 
-def above_zero(text: str) -> float:
-    """A finite number > 0."""
-    try:
-        value = at_least_zero(text)
-    except argparse.ArgumentTypeError:
-        value = 0.0
-    if not value > 0:
-        raise argparse.ArgumentTypeError(f"must be a number > 0, got {text}")
-    return value
-
-
-def whole_at_least_zero(text: str) -> int:
-    """A whole number >= 0."""
-    value = at_least_zero(text)
-    if not re.fullmatch(r"\+?\d{1,9}", text.strip(), re.ASCII):
-        raise argparse.ArgumentTypeError(f"must be a whole number >= 0, got {text}")
-    return int(value)
-
-
-def whole_in(low: int, high: int) -> Callable[[str], int]:
-    """Converts a whole number in this range."""
+def whole(accepts: Callable[[int], bool], what: str) -> Callable[[str], int]:
+    """Converts a whole number, likewise."""
     def convert(text: str) -> int:
-        if not (re.fullmatch(r"\+?\d{1,20}", text, re.ASCII) and low <= int(text) <= high):
-            raise argparse.ArgumentTypeError(f"must be a whole number from {low} to {high}, got {text}")
+        if not (re.fullmatch(r"[+-]?\d{1,20}", text, re.ASCII) and accepts(int(text))):
+            raise argparse.ArgumentTypeError(f"must be {what}, got {text}")
         return int(text)
 
     return convert
@@ -80,16 +61,34 @@ def whole_in(low: int, high: int) -> Callable[[str], int]:
 
 def number_in(low: float, high: float) -> Callable[[str], float]:
     """Converts a number in this range."""
-    def convert(text: str) -> float:
-        try:
-            value = at_least_zero(text)
-        except argparse.ArgumentTypeError:
-            value = math.nan
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"must be a number from {low} to {high}, got {text}")
-        return value
+    return number(lambda value: low <= value <= high, f"a number from {low:g} to {high:g}")
 
-    return convert
+
+def whole_in(low: int, high: int) -> Callable[[str], int]:
+    """Converts a whole number in this range."""
+    return whole(lambda value: low <= value <= high, f"a whole number from {low} to {high}")
+
+
+at_least_zero = number(lambda value: value >= 0, "a number >= 0")
+above_zero = number(lambda value: value > 0, "a number > 0")
+whole_at_least_zero = whole(lambda value: 0 <= value < 10**9, "a whole number >= 0")
+any_whole = whole(lambda value: abs(value) < 10**9, "a whole number")
+
+
+# Name of a field -> default, unit, check, help of its option.
+Numbers = Mapping[str, tuple[float, str, Callable[[str], float], str]]
+any_seed = whole_in(0, 2**64 - 1)
+
+
+def add_numbers(parser: argparse.ArgumentParser, numbers: Numbers) -> None:
+    """An option for each: --library-packings for library_packings."""
+    for name, (value, unit, check, text) in numbers.items():
+        parser.add_argument("--" + name.replace("_", "-"), metavar=unit, type=check, default=value, help=text)
+
+
+def given(options: argparse.Namespace, numbers: Iterable[str]) -> dict[str, Any]:
+    """The values of these fields."""
+    return {name: getattr(options, name) for name in numbers}
 
 
 def names(text: str) -> list[str]:

@@ -1,16 +1,11 @@
 """mcdem converge: influence of a scene's numerics on its results."""
 import argparse
-from typing import TYPE_CHECKING
 
 from ..parts import interruptible
 from ..program import say
 from ..progress import StageProgress
-from .command_line import above_zero, number_in, output_path, whole_in
+from .command_line import above_zero, add_numbers, any_seed, given, number_in, output_path, whole_in
 from .scene_options import add_device_option, add_scene_options, read_scene
-
-if TYPE_CHECKING:
-    from .._engine import Scene
-    from ..convergence.convergence_types import Convergence
 
 EPILOG = """\
 Runs the scene as it stands and with finer numerics, all from the same jittered packings: the plate 2, 4
@@ -25,23 +20,28 @@ Example:
   mcdem converge scenes/small.toml --set contact.model=mc_dem --out out/converge --replicas 8"""
 
 
+NUMBERS = {
+    "replicas": (32, "N", whole_in(8, 10_000), "Number of jittered copies of the packing; comparisons are paired"),
+    "jitter": (0.0, "M", number_in(0, 1), "Standard deviation of the jitter [m]; 0: half a per cent of a diameter"),
+    "force_limit": (0.005, "X", above_zero, "Largest relative error allowed in forces"),
+    "sd_limit": (0.5, "X", above_zero, "Largest error allowed in other observables, in standard deviations over the copies"),
+    "seed": (1, "N", any_seed, "Seed of the jitter"),
+}
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     parser.add_argument("--out", metavar="DIR", type=output_path, required=True,
                         help="Folder for the table, the figure and the simulations")
-    parser.add_argument("--replicas", metavar="N", type=whole_in(8, 10_000), default=32,
-                        help="Number of jittered copies of the packing; comparisons are paired")
-    parser.add_argument("--jitter", metavar="M", type=number_in(0, 1), default=0.0,
-                        help="Standard deviation of the jitter [m]; 0: half a per cent of a diameter")
-    parser.add_argument("--force-limit", metavar="X", type=above_zero, default=0.005, help="Largest relative error allowed in forces")
-    parser.add_argument("--sd-limit", metavar="X", type=above_zero, default=0.5,
-                        help="Largest error allowed in other observables, in standard deviations over the copies")
-    parser.add_argument("--seed", metavar="N", type=whole_in(0, 2**64 - 1), default=1, help="Seed of the jitter")
+    add_numbers(parser, NUMBERS)
     add_device_option(parser)
 
 
 def run(options: argparse.Namespace) -> int:
+    from ..convergence.converge import Study
     from ..convergence.convergence_json import FILE, write_convergence
+    from ..convergence.convergence_types import Limits
+    from ..convergence.simulator import Simulator
     from ..outputs import CONVERGENCE, expect_replaceable, output_folder, remove_temporaries
     from ..report.draw import expect_replaceable_figures
     from ..report.present_convergence import present
@@ -50,21 +50,13 @@ def run(options: argparse.Namespace) -> int:
         remove_temporaries(folder / "simulations")
         expect_replaceable(folder / FILE, CONVERGENCE)
         expect_replaceable_figures(folder, ("convergence",))
-        convergence = _converge(options, scene)
+        with interruptible(), StageProgress() as stages:
+            simulator = Simulator(scene, options.out, **given(options, ("replicas", "jitter", "seed", "device")))
+            say(f"{scene.name} on {simulator.device_name}")
+            if len(scene) > 1:
+                say(f"the scene has {len(scene)} replicas; the first one is looked at: {scene.labels[0]}")
+            limits = Limits(options.force_limit, options.sd_limit)
+            convergence = Study(scene, simulator, options.jitter, limits, stages.show).run()
         write_convergence(convergence, folder)
         present(convergence, options.out)
     return 0
-
-
-def _converge(options: argparse.Namespace, scene: "Scene") -> "Convergence":
-    from ..convergence.convergence_types import Limits
-    from ..convergence.converge import Study
-    from ..convergence.simulator import Simulator
-    with interruptible(), StageProgress() as stages:
-        simulator = Simulator(scene, options.out, replicas=options.replicas, jitter=options.jitter, seed=options.seed,
-                                                 device=options.device)
-        say(f"{scene.name} on {simulator.device_name}")
-        if len(scene) > 1:
-            say(f"the scene has {len(scene)} replicas; the first one is looked at: {scene.labels[0]}")
-        limits = Limits(options.force_limit, options.sd_limit)
-        return Study(scene, simulator, options.jitter, limits, stages.show).run()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ..parts import PartedWork, SharedWork, add_sharing_options, interruptible, is_shared, share
 from ..program import say
 from ..progress import StageProgress
-from .command_line import names, number_in, output_path, whole_in
+from .command_line import add_numbers, any_seed, given, names, number_in, output_path, whole_in
 from .scene_options import add_scene_options, read_scene
 
 if TYPE_CHECKING:
@@ -37,6 +37,19 @@ Example, with a simulation as the experiment:
   mcdem diagnose scenes/small.toml --set contact.model=independent --experiment out/measured --out out/diagnosis"""
 
 
+NUMBERS = {
+    "replicates": (32, "N", whole_in(8, 10_000), "Number of runs of the unchanged scene; their scatter is the noise floor"),
+    "pairs": (8, "N", whole_in(2, 10_000), "Number of runs of each effect at each of its two amplitudes; at most --replicates"),
+    "confirmations": (8, "N", whole_in(0, 10_000),
+                      "Number of runs that confirm each proposed effect at its fitted amplitude; 0: none"),
+    "refine": (4, "FACTOR", number_in(1, 64),
+               "If the scene is not converged: largest factor by which plate.speed, grains.density or numerics.time_step is lowered before "
+               "the diagnosis is repeated (runs take up to that much longer); 1: never, and pauses of the experiment's plate are not "
+               "simulated"),
+    "seed": (1, "N", any_seed, "Seed of all random numbers"),
+}
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     parser.add_argument("--experiment", metavar="DIR", action="append", required=True, dest="experiments",
@@ -44,17 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="DIR", type=output_path, required=True,
                         help="Folder for the verdict, the page and the simulations")
     parser.add_argument("--candidates", metavar="A,B,..", type=names, action="extend", default=[], help="Candidate effects; default: all")
-    parser.add_argument("--replicates", metavar="N", type=whole_in(8, 10_000), default=32,
-                        help="Number of runs of the unchanged scene; their scatter is the noise floor")
-    parser.add_argument("--pairs", metavar="N", type=whole_in(2, 10_000), default=8,
-                        help="Number of runs of each effect at each of its two amplitudes; at most --replicates")
-    parser.add_argument("--confirmations", metavar="N", type=whole_in(0, 10_000), default=8,
-                        help="Number of runs that confirm each proposed effect at its fitted amplitude; 0: none")
-    parser.add_argument("--refine", metavar="FACTOR", type=number_in(1, 64), default=4,
-                        help="If the scene is not converged: largest factor by which plate.speed, grains.density or numerics.time_step is "
-                             "lowered before the diagnosis is repeated (runs take up to that much longer); 1: never, and pauses of the "
-                             "experiment's plate are not simulated")
-    parser.add_argument("--seed", metavar="N", type=whole_in(0, 2**64 - 1), default=1, help="Seed of all random numbers")
+    add_numbers(parser, NUMBERS)
     parser.add_argument("--library", metavar="FILE", type=output_path,
                         help="File with the simulated changes by each effect, for use with further experiments; read if it exists, "
                              "otherwise computed and written")
@@ -116,8 +119,7 @@ def _diagnose(options: argparse.Namespace, scene: "Scene", experiments: "Sequenc
 
 def _diagnosis_options(options: argparse.Namespace) -> "Options":
     from ..diagnosis.diagnose import Options
-    return Options(candidates=options.candidates, replicates=options.replicates, pairs=options.pairs,
-                   confirmations=options.confirmations, refine=options.refine, seed=options.seed, library=options.library)
+    return Options(candidates=options.candidates, library=options.library, **given(options, NUMBERS))
 
 
 def _read(options: argparse.Namespace) -> "list[Experiment]":

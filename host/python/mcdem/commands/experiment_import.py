@@ -8,9 +8,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NoReturn
 
 from ..errors import InputError
-from ..problems import to_number
 from ..program import say
-from .command_line import output_path
+from .command_line import number, output_path
 
 if TYPE_CHECKING:
     from ..experiment.experiment import Experiment
@@ -31,7 +30,6 @@ Examples:
   mcdem experiment import --mapping out/lab/mapping.toml --metadata data/known.toml --out out/lab
   mcdem experiment import data/second/* --mapping out/lab/mapping.toml --metadata data/known.toml --out out/second"""
 
-LARGEST_VOXEL = 1  # [m]
 MAPPING = "mapping.toml"
 
 
@@ -46,18 +44,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="Set a key of experiment.toml that the tables do not contain, such as 'box.size=[0.165, 0.166]'; may be "
                              "repeated")
     parser.add_argument("--metadata", metavar="FILE", default="", help="The same from a file in the format of experiment.toml")
-    parser.add_argument("--voxel-size", metavar="LENGTH", type=_voxel_size,
+    parser.add_argument("--voxel-size", metavar="LENGTH", type=number(lambda edge: 0 < edge <= 1, "> 0 and <= 1 [m]"),
                         help="Edge length of a voxel [m], for tables of images in voxels")
     parser.add_argument("--name", metavar="TEXT", default="",
                         help="Name of the experiment (default: that of the metadata, or of the folder)")
     parser.add_argument("--gzip", action="store_true", help="Compress the tables with gzip")
-
-
-def _voxel_size(text: str) -> float:
-    value = to_number(text)
-    if value is None or not 0 < value <= LARGEST_VOXEL:
-        raise argparse.ArgumentTypeError(f"must be > 0 and <= {LARGEST_VOXEL} [m], got {text}")
-    return value
 
 
 def run(options: argparse.Namespace) -> int:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..program import say
-from .command_line import output_path
+from .command_line import output_path, whole_in
 from .sources import add_figure_options, add_reference_options, figure_options, load_runs, reference_of
 
 if TYPE_CHECKING:
@@ -21,23 +21,13 @@ Examples:
   mcdem report out/small --out out/small.html
   mcdem report out/small out/diagnosis --out out/both.html --against out/measured"""
 
-MOST_SCANS = 100_000
-
-
-def scan_count(text: str) -> int:
-    """A whole number from 1 to MOST_SCANS."""
-    if not (text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= MOST_SCANS):
-        raise argparse.ArgumentTypeError(f"Value {text} not in range 1 to {MOST_SCANS}")
-    return int(text)
-
-
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("sources", metavar="RUN|DIAGNOSIS", nargs="+",
                         help="Result folders or files, of finished or running simulations, and diagnosis folders")
     parser.add_argument("--out", metavar="FILE", type=output_path, required=True, help="HTML file to write")
     add_reference_options(parser, "--against", "Experiment folder or run to compare the runs with; several are used together")
     add_figure_options(parser)
-    parser.add_argument("--scans", metavar="N", type=scan_count,
+    parser.add_argument("--scans", metavar="N", type=whole_in(1, 100_000),
                         help="Maximum number of scans of a packing shown in 3D; default: as many as fit into about 3 MB")
 
 

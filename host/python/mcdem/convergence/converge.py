@@ -15,7 +15,7 @@ from ..outputs import CONVERGENCE, expect_replaceable, output_folder, remove_tem
 from ..results.recording import Floats
 from .convergence_json import FILE, write_convergence
 from .convergence_types import Convergence, Limits
-from .errors import Baseline, Errors, RefinedRuns, cause_errors, errors_of
+from .errors import Baseline, Errors, cause_errors, errors_of
 from .refinements import Changes, Refinement, refinements_of
 from .simulator import Simulator
 from .words import words_of_cause, words_of_result
@@ -66,7 +66,7 @@ class Study:
         """Uses jittered copies of the replica's packing or, if those hardly differ, new packings. Raises InputError if the runs of the
         scene itself stop, RunError, KeyboardInterrupt."""
         begin = time.monotonic()
-        grid = self._find_grid()
+        grid = self._simulator.find_grid(self._stage("the programme's displacements"))
         cells = cells_of(grid)
         first = _first_compared(cells, grid)
         baseline, copies = self._baseline(cells, first)
@@ -77,9 +77,6 @@ class Study:
             words.append(words_of_cause(errors, refinement.remedy, self._limits, len(cells)))
         return Convergence(self._scene.name, len(baseline.observed), copies, (words_of_result(causes), *words), self._limits, tuple(causes),
                            time.monotonic() - begin)
-
-    def _find_grid(self) -> Grid:
-        return self._simulator.find_grid(self._stage("the programme's displacements"))
 
     def _baseline(self, cells: list[Cell], first: int) -> tuple[Baseline, str]:
         """The scene's replicas, and a description of them."""
@@ -102,8 +99,8 @@ class Study:
         return Baseline(cells, observed, self._limits)
 
     def _errors(self, base: Floats, refinement: Refinement) -> Errors:
-        observed = [self._observe(refinement.cause, step.changes) for step in refinement.steps]
-        return errors_of(base, RefinedRuns([step.remaining for step in refinement.steps], observed))
+        return errors_of(base, [step.remaining for step in refinement.steps],
+                         [self._observe(refinement.cause, step.changes) for step in refinement.steps])
 
     def _observe(self, stage: str, changes: Changes) -> Floats:
         return self._simulator.observe(changes, self._stage(stage))

@@ -63,14 +63,6 @@ class Baseline:
 
 
 @dataclass(frozen=True, eq=False)
-class RefinedRuns:
-    """The same replicas with one numerical setting refined step by step."""
-
-    remaining: Sequence[float]  # fraction of the error that remains after each step: 1/2, 1/4, ..
-    observed: Sequence[Floats]  # by step (replicas, cells)
-
-
-@dataclass(frozen=True, eq=False)
 class Errors:
     """By cell; CellError has the same fields."""
 
@@ -79,15 +71,16 @@ class Errors:
     follows_order: NDArray[np.bool_]
 
 
-def errors_of(base: Floats, refined: RefinedRuns) -> Errors:
-    """Errors of the scene `base`, whose rows are paired with those of every step: a replica starts from the same packing in each.
+def errors_of(base: Floats, remaining: Sequence[float], refined: Sequence[Floats]) -> Errors:
+    """Errors of the scene `base` (replicas, cells). `refined`: likewise with one numerical setting refined step by step, of the same
+    replicas in the same order; `remaining`: fraction of the error that remains after each step: 1/2, 1/4, ..
 
     After step k the error e is reduced to e remaining_k, so the scene differs from step k by e (1 - remaining_k). Least squares for each
     replica separately, so that the standard error includes correlations between steps. A replica without a value in a cell is left out
     there.
     """
-    gone = 1 - np.array(refined.remaining, float)
-    differences = base - np.array(refined.observed)
+    gone = 1 - np.array(remaining, float)
+    differences = base - np.array(refined)
     value, error, _ = mean_and_error(np.tensordot(gone, differences, 1) / (gone @ gone))
     if len(gone) < 2:
         return Errors(value, error, np.ones(len(value), bool))

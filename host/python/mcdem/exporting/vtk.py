@@ -8,9 +8,10 @@ import numpy as np
 
 from ..errors import InputError
 from ..files import write_whole
-from ..outputs import Kind, expect_replaceable
 from ..look import is_file, is_link, is_there
-from .run_file import PERIODIC, PLATE, Contacts
+from ..outputs import Kind, expect_replaceable
+from ..results.names import Wall
+from .scans import PERIODIC
 
 GUIDE_NAME = "README.txt"
 GUIDE = """Grains and contacts for ParaView
@@ -47,7 +48,7 @@ The replicas here, with the scene keys that are not the same in all of the run:
 """
 
 CELL_TYPES = np.array([1, 3, 7], np.uint8)  # of VTK: vertex, line, polygon
-CURVED_WALL, FLOOR = 0, 4  # numbers of walls; PLATE is another
+CURVED_WALL = Wall.x_min
 SIDES = 64  # of the polygon that approximates a circle
 VERSION = [1, 0]  # of VTKHDF
 SCAN_FIELDS = {"frame", "time", "plate_z", "top_force"}  # that all files have
@@ -65,9 +66,8 @@ def export_replica(replica, folder, is_chosen):
         motion.go_on_to(scan)
         if is_chosen(scan):
             folder.mkdir(exist_ok=True)
-            contacts = Contacts(scan)
-            grids = {"grains": grains_grid(scan, contacts, motion), "contacts": contacts_grid(scan, contacts),
-                     "forces": forces_grid(contacts), "walls": walls_grid(scan)}
+            grids = {"grains": grains_grid(scan, motion), "contacts": contacts_grid(scan), "forces": forces_grid(scan.contacts),
+                     "walls": walls_grid(scan)}
             for what, grid in grids.items():
                 file = folder / f"{what}_{scan.frame:06}.hdf"
                 expect_replaceable(file, Kind("an export", b"\x89HDF\r\n", b"VTKHDF"))
@@ -164,13 +164,13 @@ def rotation_since(scan, before):
     return vector * np.where(sine > 0, 2 * np.arctan2(sine, abs(cosine)) / np.where(sine > 0, sine, 1), 2)
 
 
-def grains_grid(scan, contacts, motion):
-    replica, last = scan.replica, motion.last
+def grains_grid(scan, motion):
+    replica, contacts, last = scan.replica, scan.contacts, motion.last
     count = len(scan.position)
     data = {"grain": np.arange(count, dtype=np.int32), "diameter": replica.diameter}
     if replica.species is not None:
         data["species"] = replica.species
-    if contacts.are_known:
+    if scan.knows_contacts:
         stress = contacts.stress()
         data |= {"coordination_number": contacts.coordination_number(), "force_magnitude": contacts.force_magnitude(),
                  "stress": stress.reshape(-1, 9), "pressure": np.trace(stress, axis1=1, axis2=2) / 3}
@@ -203,9 +203,10 @@ def wall_foot(scan, wall, points):
     return foot
 
 
-def contacts_grid(scan, contacts):
+def contacts_grid(scan):
     """Lines from the grain's centre to that of its partner, or to the foot on the wall. Forces are also at the ends, because tubes
     take their radius from point data."""
+    contacts = scan.contacts
     start = scan.position[contacts.grain]
     end = start + scan.nearest(contacts.partner_position() - start)
     at_wall = ~contacts.is_pair
@@ -242,7 +243,7 @@ def walls_grid(scan):
     if shape == "cell":
         cells += [(-1, [here + level, there + level]) for level in (0 * up, up) for here, there in zip(corners, after)]
     else:
-        cells += [(FLOOR, corners), (PLATE, corners + [0, 0, scan.plate_z])]
+        cells += [(Wall.floor, corners), (Wall.plate, corners + [0, 0, scan.plate_z])]
     walls, faces = zip(*cells)
     data = {"wall": np.array(walls, np.int32), "force": [scan.wall_force[wall] if wall >= 0 else np.zeros(3) for wall in walls]}
     return np.concatenate(faces), [len(face) for face in faces], {}, data

@@ -5,7 +5,6 @@ import numpy as np
 
 from ..files import new_file
 from ..outputs import Kind, expect_replaceable
-from .run_file import Contacts
 
 GUIDE_NAME = "OVITO.txt"
 GUIDE = """replica_*.xyz            grains, one frame a scan, SI units (extended XYZ)
@@ -49,9 +48,8 @@ def export_replica(replica, folder, is_chosen):
     expect_replaceable(dump, Kind("an export", b"ITEM: TIMESTEP\n", ENTRIES.encode()))
     with new_file(xyz) as grains_out, new_file(dump) as contacts_out:
         for scan in itertools.chain([first], scans):
-            contacts = Contacts(scan)
-            grains_out.write(grains_frame(scan, contacts).encode("utf-8", "surrogateescape"))
-            contacts_out.write(contacts_frame(scan, contacts).encode())
+            grains_out.write(grains_frame(scan).encode("utf-8", "surrogateescape"))
+            contacts_out.write(contacts_frame(scan).encode())
     return 2
 
 
@@ -65,8 +63,8 @@ def numbers(values):
     return " ".join(f"{value:.9g}" for value in values)
 
 
-def grains_frame(scan, contacts):
-    replica = scan.replica
+def grains_frame(scan):
+    replica, contacts = scan.replica, scan.contacts
     count = len(scan.position)
     names = np.array([name.replace(" ", "_") for name in replica.species_names], object)
     types = np.full(count, "X", object) if replica.species is None else names[replica.species]
@@ -91,8 +89,8 @@ def dump_bounds(scan):
             f"{numbers([0, height, yz])}\n")
 
 
-def contacts_frame(scan, contacts):
-    pairs = contacts.is_pair
+def contacts_frame(scan):
+    contacts, pairs = scan.contacts, scan.contacts.is_pair
     return (f"ITEM: TIMESTEP\n{scan.frame}\nITEM: NUMBER OF ENTRIES\n{pairs.sum()}\n{dump_bounds(scan)}{ENTRIES}"
             + rows(CONTACT, contacts.grain[pairs], contacts.partner[pairs], contacts.magnitude[pairs], contacts.force[pairs],
                    contacts.overlap[pairs]))

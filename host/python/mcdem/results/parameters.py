@@ -1,6 +1,6 @@
 """Scene keys of a recording with their values, as TOML text (host/core/parameters.h)."""
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 Parameters = dict[str, str]
 
@@ -28,7 +28,7 @@ def has_programme(parameters: Parameters) -> bool:
     return "programme.1.stage" in parameters
 
 
-def keys_that_vary(everyone: Sequence[Parameters]) -> list[str]:
+def keys_that_vary(everyone: Sequence[Mapping[str, object]]) -> list[str]:
     """Keys with different values among these, in alphabetical order."""
     keys = {key for parameters in everyone for key in parameters}
-    return sorted(key for key in keys if len({value_of(parameters, key) for parameters in everyone}) > 1)
+    return sorted(key for key in keys if len({parameters.get(key, "") for parameters in everyone}) > 1)
