@@ -71,6 +71,10 @@ def _whole(value: Any, place: str) -> int:
     return int(value)
 
 
+def _is_enumeration(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, enum.IntEnum)
+
+
 def _array(value: Any, place: str) -> NDArray[np.float64]:
     """A vector, or a matrix by rows; (0, 0) for an empty list."""
     _expect(value, list, place)
@@ -98,7 +102,7 @@ def value_of(kind: Any, value: Any, place: str, defaults: bool = True) -> Any:
         return None if value is None else value_of(kind.__args__[0], value, place, defaults)
     if dataclasses.is_dataclass(kind):
         return object_of(typing.cast(Any, kind), value, place, defaults)
-    if isinstance(kind, type) and issubclass(kind, enum.IntEnum):
+    if _is_enumeration(kind):
         expect(isinstance(value, str) and value in kind.__members__, f"{place}: there is no {json.dumps(value, ensure_ascii=False)}")
         return kind[value]
     if kind is str:
@@ -151,7 +155,7 @@ def json_of(kind: Any, value: Any) -> Any:
         return _object_json(typing.cast(Any, kind), value)
     if kind is float:
         return float(value) if math.isfinite(value) else None
-    if isinstance(kind, type) and issubclass(kind, enum.IntEnum):
+    if _is_enumeration(kind):
         return value.name
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if origin is np.ndarray:

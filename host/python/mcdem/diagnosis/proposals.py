@@ -10,7 +10,7 @@ from .decision import Proposal
 from .effect_fit import Candidate, EffectFit, draw_error, fit_effect, fits_of_many
 from .effects import is_numerical
 from .evidence import GapData
-from .gap_space import CellChoice, FreeParameter, GapSpace, pick, without
+from .gap_space import CellChoice, FreeParameter, GapSpace, without
 from .gap_tests import GapStatistics, NullDistribution
 from .rearrangements import PlaceLeftOut
 
@@ -28,28 +28,23 @@ MIN_RUNS = 2
 STILL_FREE = 0.25  # fraction of an amplitude
 
 
-def signature_variance(data: GapData, proposal: Proposal) -> Floats:
-    """Variance of the error of a proposal's signatures for one packing: packings differ in an effect, and a tenth of a signature is uncertain.
-    (all cells,)"""
-    return _effect_scatter(data, proposal) + _signature_error_variance(data, proposal)
+def signature_variance(data: GapData, proposal: Proposal, packings: int = 1) -> Floats:
+    """(all cells,) variance of the error of a proposal's signatures for the mean of packings: packings differ in an effect, and a tenth of a
+    signature is uncertain."""
+    variance = _effect_scatter(data, proposal) / packings
+    for one, amplitude in zip(data.chosen(proposal.candidates), proposal.amplitudes):
+        variance += (SIGNATURE_ERROR * one.signature.at(amplitude)) ** 2
+    return variance
 
 
 def _effect_scatter(data: GapData, proposal: Proposal) -> Floats:
     """Additional scatter between packings caused by the effect, because packings differ in it and it has random draws. For one packing."""
     chaos = 2 * data.packings * (data.noise**2).sum(axis=0) / len(data.noise)
     extra = np.zeros_like(data.mean)
-    for c, amplitude in zip(proposal.candidates, proposal.amplitudes):
-        signature = data.candidates[c].signature
-        part = min(1.0, abs(amplitude) / signature.reach)
-        extra += np.maximum(amplitude**2 * signature.spread() - part**2 * chaos, 0)
+    for one, amplitude in zip(data.chosen(proposal.candidates), proposal.amplitudes):
+        part = min(1.0, abs(amplitude) / one.signature.reach)
+        extra += np.maximum(amplitude**2 * one.signature.spread() - part**2 * chaos, 0)
     return extra
-
-
-def _signature_error_variance(data: GapData, proposal: Proposal) -> Floats:
-    variance = np.zeros_like(data.mean)
-    for c, amplitude in zip(proposal.candidates, proposal.amplitudes):
-        variance += (SIGNATURE_ERROR * data.candidates[c].signature.at(amplitude)) ** 2
-    return variance
 
 
 def propose(space: GapSpace, data: GapData, null: NullDistribution, statistics: GapStatistics) -> list[Proposal]:
@@ -62,8 +57,7 @@ def propose(space: GapSpace, data: GapData, null: NullDistribution, statistics: 
     if pair and pair.gain > statistics.directed + PAIR_GAIN:
         proposals.append(pair)
     for proposal in proposals:
-        extra = _effect_scatter(data, proposal) / data.packings + _signature_error_variance(data, proposal)
-        with_error = data.space(extra=extra)
+        with_error = data.space(extra=signature_variance(data, proposal, data.packings))
         proposal.misfit_p = null.misfit_p(with_error, data.gap - data.explained(proposal.candidates, proposal.amplitudes))
         proposal.errors = [
             math.hypot(error, draw_error(space, data.candidates[c], amplitude), AMPLITUDE_ERROR * amplitude)
@@ -116,7 +110,7 @@ def _best_pair(space: GapSpace, data: GapData, order: Sequence[int]) -> Proposal
 
 def whole_runs(runs: Floats, cells: CellChoice) -> Floats:
     """The runs that finished: packings may run away at amplitudes at which others do not. (finished runs, all cells)"""
-    whole: Floats = runs[np.isfinite(pick(runs, cells)).all(axis=1)]
+    whole: Floats = runs[np.isfinite(runs[:, cells]).all(axis=1)]
     return whole
 
 
