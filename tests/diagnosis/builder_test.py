@@ -4,24 +4,19 @@ import unittest
 from dataclasses import replace
 
 import numpy as np
-from synthetic_evidence import SyntheticWorld
+from synthetic_evidence import Case
 
 from mcdem.diagnosis.builder import DiagnosisBuilder
 from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.diagnosis_types import Verdict
-from mcdem.diagnosis.gap_space import GapSpace
 from mcdem.observe.grid import cells_each
 from mcdem.observe.observables import observables
 
 
 def planted(seed, observables_known=6, effects=("adhesion",), size=1.0):
     """A world, its evidence with effects of random patterns, and the pattern of the first one."""
-    world = SyntheticWorld(observables_known, seed)
-    evidence = world.evidence(1, 32)
-    patterns = [world.pattern(size) for _ in effects]
-    for name, pattern in zip(effects, patterns):
-        world.add_effect(evidence, name, pattern)
-    return world, evidence, patterns[0]
+    case = Case(effects=effects, size=size, parameters=(), known=observables_known, seed=seed)
+    return case.world, case.evidence, case.effects[0].linear
 
 
 def built(evidence):
@@ -105,7 +100,7 @@ class Planted(unittest.TestCase):
         self.assertEqual(builder.refining_factor(0, 1.5), 1.5)
         cause, = builder.diagnosis().causes
         amplitude = min(cause.amplitude + cause.amplitude_error, 1)
-        space = GapSpace(builder.data.noise, len(evidence.baseline), builder.data.cells, [])
+        space = builder.data.space(free=[])
         left = [space.whiten((amplitude - 1 + 1 / f) * pattern) for f in (factor / 2, factor)]
         self.assertEqual([0.5 * (one**2).sum() < 4 for one in left], [False, True])
 

@@ -1,14 +1,29 @@
 """The verdict as a function of a few numbers. decision_test.py"""
 import math
 import unittest
+from dataclasses import replace
 
-from decision_cases import clear_case, proposal
-
-from mcdem.diagnosis.decision import Decision, Limits, decide, explanation_of
+from mcdem.diagnosis.decision import Decision, Findings, Limits, Proposal, contenders, decide, explanation_of
 from mcdem.diagnosis.diagnosis_types import Verdict
 
 LIMITS = Limits()
+CERTAIN, PAIR_MISFIT, LEAST = LIMITS.second_certain, LIMITS.pair_misfit, LIMITS.pair_reduction
 GROUP_OF_3 = Limits(group=3)
+
+
+def proposal(candidates, gain, misfit_p, reduction=0.96):
+    """A gap reduction of nearly the whole gap."""
+    return Proposal(list(candidates), [1.0] * len(candidates), [0.1] * len(candidates), gain, misfit_p, reduction=reduction)
+
+
+def clear_case(proposals=None, first=None, **others):
+    """Four effects, a nuisance beyond its prior, and a clear gap that the second effect explains. `first`: changes of the first
+    proposal; `others`: of the findings."""
+    known = [proposal([1], 50, 0.5), proposal([4], 20, 1e-6, 0.3)] if proposals is None else proposals
+    if first:
+        known[0] = replace(known[0], **first)
+    made = Findings(1e-4, ["adhesion", "friction", "plasticity", "plate_tilt", "modulus"], 4, [10, 50, 2, 0, 20], known, placebo=0.1)
+    return replace(made, **others)
 
 
 def first(**changes):
@@ -57,6 +72,23 @@ def pair_with_numerics():
     return clear_case([proposal([1], 50, 1e-6, 0.7), proposal([4], 20, 1e-6, 0.3), proposal([1, 3], 80, 0.5)], numerics=[3])
 
 
+def pair(single, two):
+    """One effect is not sufficient, a pair is; with these changes of both."""
+    known = [replace(proposal([1], 50, 1e-6, 0.7), **single), proposal([4], 20, 1e-6, 0.3),
+             replace(proposal([1, 3], 58.5, PAIR_MISFIT), **two)]
+    return clear_case(known, gain=[10, known[0].gain, 2, 0, 20])
+
+
+def large(gain, more):
+    """A large gain, and how much more a pair gains."""
+    return pair({"gain": gain}, {"gain": gain + more})
+
+
+MUCH_BETTER, ENOUGH = {"misfit_p": 0.5, "reduction": 0.96}, {"reduction": 0.96}
+PLACE = {"left_out": 2, "rest_misfit_p": 0.3}
+WITHOUT = {"reduction": 0.96, "gain": 80, "misfit_p": 1e-6}
+ONE_PLACE = ENOUGH | {"left_out": 2, "rest_misfit_p": 0.1}
+NEARLY = {"gain": 80, "misfit_p": 0.99 * PAIR_MISFIT, "reduction": 0.99}  # a pair that leaves more than noise
 NO_PROPOSAL = {"proposals": []}
 BEST_NUISANCE = [proposal([4], 60, 0.5), proposal([1], 58, 0.5)]
 BOTH = {"gain": [10, 58, 2, 0, 60]}
@@ -104,6 +136,27 @@ DECISIONS = {
     "real runs prefer the parameter": (known(30, 44), V.calibration_suspect, 1, [4]),
     "its runs take little away": (known(30, 44, confirmed_reduction=0.2), V.unknown_effect, 1, None),
     "only its signature does": (known(30, 44, reduction=0.2, confirmed_reduction=0.9), V.calibration_suspect, 1, None),
+    "a pair": (pair({}, {}), V.effect, 2, [1, 3]),
+    "one effect is enough": (pair({"misfit_p": 0.5}, {}), V.effect, 0, None),
+    "8 more are needed of a pair": (pair({}, {"gain": 57.9}), V.unknown_effect, 0, None),
+    "a pair takes enough away": (pair({}, {"reduction": LEAST}), V.effect, 2, [1, 3]),
+    "a pair takes too little away": (pair({}, {"reduction": 0.99 * LEAST}), V.unknown_effect, 0, None),
+    "neither takes enough away": (pair({"reduction": 0.5}, {"reduction": 0.5}), V.unknown_effect, 0, None),
+    "a large gain needs a large second one": (large(1000, 990 * LIMITS.second_share), V.unknown_effect, 0, None),
+    "and this is one": (large(1000, 1010 * LIMITS.second_share), V.effect, 2, [1, 3]),
+    "never more than this": (large(1e5, 0.99 * CERTAIN), V.unknown_effect, 0, None),
+    "is needed": (large(1e5, 1.01 * CERTAIN), V.effect, 2, [1, 3]),
+    # One effect leaves only noise, but two describe the data much better.
+    "much better": (pair(MUCH_BETTER, {"gain": 50 + 1.01 * CERTAIN, "misfit_p": 0.9}), V.effect, 2, [1, 3]),
+    "better": (pair(MUCH_BETTER, {"gain": 50 + 0.99 * CERTAIN, "misfit_p": 0.9}), V.effect, 0, None),
+    # A pair that leaves more than noise has another cause, or a third one.
+    "a pair leaves more than noise": (pair({}, NEARLY), V.unknown_effect, 0, None),
+    "and one effect takes too little": (pair({"reduction": 0.69}, NEARLY), V.unknown_effect, 0, None),
+    "a pair leaves only noise": (pair({}, NEARLY | {"misfit_p": 1.01 * PAIR_MISFIT}), V.effect, 2, [1, 3]),
+    # A place that is left out for a pair may be left out for one effect.
+    "a place is left out for the pair": (pair(ENOUGH, WITHOUT | PLACE), V.effect, 2, [1, 3]),
+    "and for one effect": (pair(ONE_PLACE, WITHOUT | PLACE), V.effect, 0, None),
+    "two effects explain all places": (pair(ONE_PLACE, WITHOUT | {"misfit_p": 0.3}), V.effect, 2, [1, 3]),
 }
 
 
@@ -143,7 +196,17 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(decide(clear_case(gain=[30, 50, 2, 0, 20], **changes), LIMITS).group, [1])
 
 
+    def test_contenders_are_what_the_decision_depends_on(self):
+        for findings, expected in ((pair({}, {}), [0, 2]), (pair({}, {"gain": 57.9}), [0]), (clear_case([proposal([1, 3], 80, 0.5)]), [])):
+            self.assertEqual(contenders(findings, LIMITS), expected)
+
+
 class Confidence(unittest.TestCase):
+    def test_both_effects_of_a_pair_are_probable(self):
+        confidence = decide(pair({}, {}), LIMITS).confidence
+        self.assertGreater(confidence[1], 0.8)
+        self.assertEqual((confidence[3], confidence[0]), (confidence[1], 0))
+
     def test_is_the_measured_success_rate(self):
         certain, none = LIMITS.reduction + LIMITS.certain_above, LIMITS.reduction - LIMITS.doubt_below
         quarter = 0.25 * LIMITS.right_above + 0.75 * LIMITS.right_below

@@ -9,7 +9,6 @@ from synthetic_evidence import SyntheticWorld
 from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.detection_limits import detection_limits
 from mcdem.diagnosis.evidence import gap_data
-from mcdem.diagnosis.gap_space import GapSpace
 from mcdem.diagnosis.gap_tests import NullDistribution, statistics_of
 
 REPLICATES = 32
@@ -27,8 +26,8 @@ class DetectionLimits(unittest.TestCase):
             self.world.add_effect(self.evidence, name, linear, *bounds)
         self.world.add_nuisance(self.evidence, "modulus", modulus, 1000)  # a prior so wide that it has no effect
         self.data = gap_data(self.evidence)
-        self.space = GapSpace(self.data.noise, REPLICATES, self.data.cells, self.data.free)
-        self.null = NullDistribution(self.data, REPLICATES, 1)
+        self.space = self.data.space()
+        self.null = NullDistribution(self.data, 1)
 
     def limits(self):
         return detection_limits(self.space, self.data, self.null, self.evidence, LIMITS)
@@ -75,7 +74,7 @@ class DetectionLimits(unittest.TestCase):
     def test_report_the_part_absorbed_by_calibration(self):
         self.assertAlmostEqual(self.limits()[LIKE_MODULUS].absorbed_by_calibration, 1, delta=1e-4)
         # Orthogonal to the modulus in the metric of the noise: nothing is absorbed.
-        fixed = GapSpace(self.data.noise, REPLICATES, self.data.cells, [])
+        fixed = self.data.space(free=[])
         linear, modulus = self.evidence.library.effects[FRICTION].linear, self.evidence.library.nuisances[0].linear
         m = fixed.whiten(modulus)
         linear -= (fixed.whiten(linear) @ m) / (m @ m) * modulus

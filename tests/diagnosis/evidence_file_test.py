@@ -6,7 +6,7 @@ import unittest
 from dataclasses import replace
 
 import numpy as np
-from synthetic_evidence import TwoEffects
+from synthetic_evidence import Case
 
 from mcdem.diagnosis.decision import Findings, Proposal
 from mcdem.diagnosis.evidence_file import evidence_text, findings_text, read_evidence, read_findings
@@ -35,7 +35,7 @@ class Files(unittest.TestCase):
 
 class KeptEvidence(Files):
     def test_is_read_back_unchanged(self):
-        evidence = TwoEffects().evidence
+        evidence = Case(4).evidence
         evidence.seed = 2**64 - 1
         back = read_evidence(self.written(evidence_text(evidence)), evidence.library)
         np.testing.assert_array_equal(back.observed, evidence.observed)  # with NaN
@@ -45,7 +45,7 @@ class KeptEvidence(Files):
         self.assertEqual(json.loads(evidence_text(evidence))["candidates"][0], {"name": "adhesion", "unit": "", "low": -10.0, "high": 10.0})
 
     def test_of_another_library_is_refused(self):
-        evidence = TwoEffects().evidence
+        evidence = Case(4).evidence
         library, file = evidence.library, self.written(evidence_text(evidence))
         for other, problem in ((replace(library, effects=library.effects[1:]), "the library lacks an effect of it"),
                                (replace(library, nuisances=[]), "the library lacks a nuisance of it"),
@@ -54,7 +54,7 @@ class KeptEvidence(Files):
                 read_evidence(file, other)
 
     def test_what_is_none_is_refused(self):
-        library = TwoEffects().evidence.library
+        library = Case(4).evidence.library
         for text in ("", "[]", "{}", '{"seed":1,"observed":[1],"baseline":3,"candidates":[],"nuisances":[]}'):
             with self.assertRaisesRegex(InputError, "not evidence of this challenge"):
                 read_evidence(self.written(text), library)

@@ -3,10 +3,8 @@ import math
 import unittest
 
 import numpy as np
-from synthetic_evidence import TwoEffects
+from synthetic_evidence import Case
 
-from mcdem.diagnosis.builder import DiagnosisBuilder
-from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.diagnosis_types import Verdict
 from mcdem.diagnosis.evidence import leave_out_failures
 from mcdem.errors import InputError
@@ -14,11 +12,8 @@ from mcdem.errors import InputError
 
 class Failures(unittest.TestCase):
     def setUp(self):
-        self.world = TwoEffects()
-        self.evidence = self.world.evidence
-
-    def diagnosis(self):
-        return DiagnosisBuilder(self.evidence, Limits()).diagnosis()
+        self.case = Case(4, replicates=16)
+        self.evidence, self.diagnosis = self.case.evidence, self.case.diagnosis
 
     def notes(self, *expected, causes=None):
         """What is left out must be as these say."""
@@ -76,7 +71,7 @@ class Failures(unittest.TestCase):
             leave_out_failures(self.evidence, causes)
 
     def test_an_effect_that_no_observable_shows_has_no_amplitude(self):
-        self.world.synthetic.add_effect(self.evidence, "force_bias", np.zeros_like(self.evidence.observed))
+        self.case.world.add_effect(self.evidence, "force_bias", np.zeros_like(self.evidence.observed))
         of_it = [(cause.amplitude, cause.amplitude_error) for cause in self.diagnosis().ranking if cause.effect == "force_bias"]
         self.assertEqual(of_it, [(0, math.inf)])
 

@@ -7,7 +7,6 @@ import numpy as np
 from synthetic_evidence import SyntheticWorld, evidence_of
 
 from mcdem.diagnosis.evidence import OWN_PACKING, CandidateRange, gap_data
-from mcdem.diagnosis.gap_space import GapSpace
 from mcdem.diagnosis.gap_tests import NullDistribution, gap_statistics, highest_pattern, statistics_of
 
 
@@ -20,14 +19,10 @@ def with_effects(world, evidence, planted=0.0):
     return evidence
 
 
-def space_of(data, mean_of):
-    return GapSpace(data.noise, mean_of, data.cells, data.free)
-
-
 def p_values(evidence):
     """Of the omnibus and of the directed test."""
-    data, mean_of = gap_data(evidence), len(evidence.baseline)
-    null, s = NullDistribution(data, mean_of, 1), gap_statistics(space_of(data, mean_of), data, data.gap)
+    data = gap_data(evidence)
+    null, s = NullDistribution(data, 1), gap_statistics(data.space(), data, data.gap)
     return null.p_value("omnibus", s.omnibus), null.p_value("directed", s.directed)
 
 
@@ -102,7 +97,7 @@ class Statistics(unittest.TestCase):
         world = SyntheticWorld(3, 1)
         evidence = with_effects(world, world.evidence(1, 30))
         data = gap_data(evidence)
-        space, friction, modulus = space_of(data, 30), evidence.library.effects[1].linear, evidence.library.nuisances[0].linear
+        space, friction, modulus = data.space(), evidence.library.effects[1].linear, evidence.library.nuisances[0].linear
         gap = data.gap + 4 * friction + 3 * modulus
         s = gap_statistics(space, data, gap)
         self.assertEqual([data.name(k) for k in range(len(s.fits))], ["adhesion", "friction", "modulus"])  # the modulus beyond its prior
@@ -123,7 +118,7 @@ class Statistics(unittest.TestCase):
         evidence.library.effects[0].reach = 0.5
         evidence.library.effects[1].linear[8:12] = np.nan
         data = gap_data(evidence)
-        null, space = NullDistribution(data, 24, 1), space_of(data, 24)
+        null, space = NullDistribution(data, 1), data.space()
         of_draws = null.draws()[0]
         self.assertEqual({len(values) for values in of_draws.values()}, {3 * 24})
         gaps = np.array([scale * data.gap for scale in (0.1, 1, 3)])
@@ -142,7 +137,7 @@ class Patterns(unittest.TestCase):
     def test_of_one_observable_are_detected(self):
         world = SyntheticWorld(3, 5)
         data = gap_data(world.evidence(1, 2000, 0))
-        space = GapSpace(data.noise, 0, data.cells, [])
+        space = data.space(free=[], mean_of=0)
         # In the plate's order: the first four while it moves down; the last four, listed by displacement, while it moves up.
         trend = np.array([-3.5, -2.5, -1.5, -0.5, 3.5, 2.5, 1.5, 0.5])
         even, one = np.ones(8), 7.0 * (np.arange(8) == 2)
@@ -156,7 +151,7 @@ class Patterns(unittest.TestCase):
         even, thin = 0, 0
         for seed in range(300, 400):
             data = gap_data(SyntheticWorld(20, seed).evidence(1, 32))
-            space, null = GapSpace(data.noise, 32, data.cells, []), NullDistribution(data, 32, 1)
+            space, null = data.space(free=[]), NullDistribution(data, 1)
             even += null.misfit_p(space, data.gap) < 0.05
             left = data.gap.copy()
             left[8:16] += 3  # one of twenty observables: chi-square 160 +- 18, plus 24
@@ -169,7 +164,7 @@ class Null(unittest.TestCase):
     def test_quantile_is_the_inverse_of_p(self):
         world = SyntheticWorld(3, 2)
         data = gap_data(with_effects(world, world.evidence(1, 24)))
-        null = NullDistribution(data, 24, 1)
+        null = NullDistribution(data, 1)
         self.assertEqual(list(null.draws()), [0])
         for p in (0.5, 0.05, 0.001):
             np.testing.assert_allclose(null.p_value("highest_refitted", null.quantile("highest_refitted", p)), p, 1e-7)
@@ -181,7 +176,7 @@ class Null(unittest.TestCase):
     def test_depends_only_on_its_seed(self):
         world = SyntheticWorld(2, 3)
         data = gap_data(with_effects(world, world.evidence(1, 16)))
-        one, same, other = (NullDistribution(data, 16, seed).p_value("highest_refitted", 3) for seed in (1, 1, 2))
+        one, same, other = (NullDistribution(data, seed).p_value("highest_refitted", 3) for seed in (1, 1, 2))
         self.assertEqual(one, same)
         self.assertNotEqual(one, other)
 
@@ -199,7 +194,7 @@ class GapData(unittest.TestCase):
         self.assertEqual(data.group[48:].tolist(), 8 * [OWN_PACKING])
         self.assertEqual(data.fold[48:].tolist(), list(range(8, 16)))
         np.testing.assert_allclose(data.noise[48:, 3], (own[:, 3] - own[:, 3].mean()) * math.sqrt(8 / 7), atol=1e-12)
-        self.assertEqual(list(NullDistribution(data, 8, 1).draws()), [OWN_PACKING, *range(12)])
+        self.assertEqual(list(NullDistribution(data, 1).draws()), [OWN_PACKING, *range(12)])
         few = [packing % 7 for packing in evidence.library.packing]  # the experiment's own packing may be among them
         for changed in (replace(evidence, library_is_own=True), replace(evidence, library=replace(evidence.library, packing=few)),
                         replace(evidence, baseline=own[:3])):  # too few to be used

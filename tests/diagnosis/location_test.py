@@ -2,28 +2,20 @@
 import unittest
 
 import numpy as np
-from synthetic_evidence import GRID, SyntheticWorld
+import synthetic_evidence
+from synthetic_evidence import GRID
 
 from mcdem.diagnosis.decision import Limits
-from mcdem.diagnosis.evidence import gap_data
-from mcdem.diagnosis.gap_space import GapSpace
-from mcdem.diagnosis.gap_tests import NullDistribution
 from mcdem.diagnosis.location import locate
 from mcdem.observe.observables import observables
 
-REPLICATES = 32
 PLANTED = 8 * 2 + 4 + 1  # the third observable, unloading, second displacement
 
 
-class World:
-    def __init__(self, seed):
-        self.world = SyntheticWorld(4, seed)
-        evidence = self.world.evidence(1, REPLICATES)
-        self.world.add_nuisance(evidence, "modulus", self.world.pattern(0.5), 1)
-        self.modulus = evidence.library.nuisances[0].linear
-        self.data = gap_data(evidence)
-        self.space = GapSpace(self.data.noise, REPLICATES, self.data.cells, self.data.free)
-        self.null = NullDistribution(self.data, REPLICATES, 1)
+class Case(synthetic_evidence.Case):
+    def __init__(self, seed=1):
+        super().__init__(effects=(), known=4, seed=seed)
+        self.modulus = self.parameters[0].linear
 
     def locate(self, gap):
         return locate(self.space, self.data, self.null, gap, GRID, Limits(false_alarm=0.05))
@@ -38,7 +30,7 @@ class World:
 
 class Locations(unittest.TestCase):
     def test_planted_cells_and_their_range_are_found(self):
-        world = World(1)
+        world = Case()
         gap = world.gap_of({PLANTED: 8, PLANTED + 1: 10})
         entry, = world.locate(gap).entries
         known = observables()[2]
@@ -51,13 +43,13 @@ class Locations(unittest.TestCase):
         self.assertEqual(entry.difference, 10)
 
     def test_ranges_do_not_exceed_the_stroke(self):
-        world = World(1)
+        world = Case()
         entry, = world.locate(world.gap_of({3: -9})).entries
         self.assertEqual(entry.displacement_mm[1], 1e3 * GRID.stroke)
         self.assertLess(entry.z_score, 0)
 
     def test_the_largest_is_first(self):
-        world = World(1)
+        world = Case()
         # The third one is not adjacent to the first: the cell between them has no difference.
         entries = world.locate(world.gap_of({0: 8, 8: -12, 2: 9})).entries
         self.assertEqual(len(entries), 3)
@@ -66,12 +58,12 @@ class Locations(unittest.TestCase):
         self.assertEqual(sizes, sorted(sizes, reverse=True))
 
     def test_loading_and_unloading_are_separate(self):
-        world = World(1)
+        world = Case()
         entries = world.locate(world.gap_of({3: 9, 4: 10})).entries  # neighbours in the list of cells
         self.assertEqual([entry.phase for entry in entries], ["unload", "load"])
 
     def test_all_cells_are_listed(self):
-        world = World(1)
+        world = Case()
         found = world.locate(world.data.gap)
         self.assertEqual(len(found.cells), 32)
         cell = found.cells[PLANTED]
@@ -81,7 +73,7 @@ class Locations(unittest.TestCase):
     def test_replicates_have_no_significant_cells(self):
         alarms, draws = 0, 200
         for seed in range(10, 10 + draws):
-            world = World(seed)
+            world = Case(seed)
             alarms += len(world.locate(world.data.gap + world.world.normal() * world.modulus).entries) > 0
         self.assertLessEqual(alarms, 0.12 * draws)  # 5 % +- 1.5 %, and as much again for thresholds from 32 replicates
         self.assertGreaterEqual(alarms, 1)

@@ -4,48 +4,36 @@ import unittest
 from dataclasses import replace
 
 import numpy as np
-from synthetic_evidence import SyntheticWorld
+import synthetic_evidence
 
 from mcdem.diagnosis.decision import Proposal
 from mcdem.diagnosis.effect_fit import EffectFit
-from mcdem.diagnosis.evidence import gap_data
-from mcdem.diagnosis.gap_space import GapSpace
-from mcdem.diagnosis.gap_tests import NullDistribution, gap_statistics
-from mcdem.diagnosis.proposals import confirm, explained_by, propose
+from mcdem.diagnosis.gap_tests import gap_statistics
+from mcdem.diagnosis.proposals import confirm, propose
 
-REPLICATES = 32
 ADHESION, FRICTION, PLASTICITY, TILT = range(4)
 
 
-class Case:
-    """A gap from these amplitudes of the four effects."""
-
+class Case(synthetic_evidence.Case):
     def __init__(self, *amplitudes, seed=1):
-        self.world = SyntheticWorld(4, seed)
-        evidence = self.world.evidence(1, REPLICATES)
-        for name in ("adhesion", "friction", "plasticity", "plate_tilt"):
-            self.world.add_effect(evidence, name, self.world.pattern(1))
-        self.world.add_nuisance(evidence, "modulus", self.world.pattern(0.5), 1)
-        self.effects = [signature.linear for signature in evidence.library.effects]
-        for amplitude, linear in zip(amplitudes, self.effects):
-            evidence.observed += amplitude * linear
-        self.evidence, self.data = evidence, gap_data(evidence)
-        self.space = GapSpace(self.data.noise, REPLICATES, self.data.cells, self.data.free)
-        self.null = NullDistribution(self.data, REPLICATES, 1)
-        self.statistics = gap_statistics(self.space, self.data, self.data.gap)
+        super().__init__(*amplitudes, effects=("adhesion", "friction", "plasticity", "plate_tilt"), known=4, seed=seed)
+        self.linear = [signature.linear for signature in self.effects]
 
     def proposals(self, statistics=None):
-        return propose(self.space, self.data, self.null, statistics or self.statistics, REPLICATES)
+        return propose(self.space, self.data, self.null, statistics or self.statistics)
 
-    def runs(self, shift, number=16):
-        centre = self.data.mean + shift
-        return np.array([centre + self.world.noise() for _ in range(number)])
+    def singles(self, statistics):
+        return [one.candidates[0] for one in self.proposals(statistics) if not one.is_pair()]
 
     def confirmed(self, proposal, runs, nuisance=0.0):
         """The proposal with these runs, and the next step."""
         confirmed = replace(proposal)
         step = confirm(confirmed, self.data, self.null, [], 0.001, self.evidence.observed, np.array([nuisance]), runs)
         return confirmed, step
+
+
+def scored(*scores):
+    return [EffectFit([1], [0.1], score) for score in scores]
 
 
 class Proposals(unittest.TestCase):
@@ -66,14 +54,14 @@ class Proposals(unittest.TestCase):
             self.assertAlmostEqual(amplitude, 4 if candidate == FRICTION else -3, delta=4 * error)
         self.assertGreater(pair.misfit_p, 0.01)
         self.assertLess(first.misfit_p, 0.003)
-        left = case.data.gap - explained_by(pair, case.data)
+        left = case.data.gap - case.data.explained(pair.candidates, pair.amplitudes)
         np.testing.assert_allclose(pair.gain, 0.5 * (case.statistics.omnibus - (case.space.whiten(left) ** 2).sum()), 1e-6)
 
     def test_two_effects_neither_of_which_is_best_alone(self):
         # They cancel most of each other, so a third effect with the signature of the remainder is the best single one.
         case = Case()
         large, small, decoy = (case.world.pattern(size) for size in (3, 0.5, 0.2))
-        case.effects[FRICTION][:], case.effects[TILT][:], case.effects[ADHESION][:] = large, small - large, small + decoy
+        case.linear[FRICTION][:], case.linear[TILT][:], case.linear[ADHESION][:] = large, small - large, small + decoy
         case.data.gap = 8 * small
         statistics = gap_statistics(case.space, case.data, case.data.gap)
         self.assertEqual(statistics.best, ADHESION)
@@ -84,34 +72,33 @@ class Proposals(unittest.TestCase):
 
     def test_a_nuisance_with_gain_is_always_confirmed(self):
         case = Case(4)
-        fits = [EffectFit(1, 0.1, 50 - k) for k in range(4)]
+        fits = scored(50, 49, 48, 47)
         for behind, singles in ((10, [0, 1, 2, 4]), (49, [0, 1, 2, 4]), (51, [0, 1, 2]), (0.5, [0, 4, 1])):  # 51: without gain
-            statistics = replace(case.statistics, fits=[*fits, EffectFit(1, 0.1, 50 - behind)], directed=50)
-            proposals = case.proposals(statistics)
-            self.assertEqual([one.candidates[0] for one in proposals if not one.is_pair()], singles)
+            statistics = replace(case.statistics, fits=fits + scored(50 - behind), directed=50)
+            self.assertEqual(case.singles(statistics), singles)
 
     def test_the_nearest_numerics_and_the_nearest_that_lacks_cells_are_tried(self):
         case = Case(4)
         gain = case.statistics.directed
-        fits = [EffectFit(1, 0.1, gain - k) for k in range(4)] + [EffectFit()]
+        fits = scored(gain, gain - 1, gain - 2, gain - 3, 0)
         statistics = replace(case.statistics, fits=fits)
-        self.assertEqual([one.candidates[0] for one in case.proposals(statistics) if not one.is_pair()], [0, 1, 2])
+        self.assertEqual(case.singles(statistics), [0, 1, 2])
         tilt = case.data.candidates[TILT]
         case.data.candidates[TILT] = replace(tilt, signature=replace(tilt.signature, name="time_step"))
-        self.assertEqual([one.candidates[0] for one in case.proposals(statistics) if not one.is_pair()], [0, 1, 2, TILT])
+        self.assertEqual(case.singles(statistics), [0, 1, 2, TILT])
         case.data.candidates[TILT] = replace(tilt, lacking=np.array([3]))
         far = replace(statistics, fits=[*fits[:3], replace(fits[3], score=1e-3), fits[4]])
         for given, singles in ((statistics, [0, 1, 2, TILT]), (far, [0, 1, 2])):
-            self.assertEqual([one.candidates[0] for one in case.proposals(given) if not one.is_pair()], singles)
+            self.assertEqual(case.singles(given), singles)
 
     def test_explanation_by_signatures_is_found(self):
         case = Case()
-        explained = explained_by(Proposal([ADHESION, PLASTICITY], [1.5, -2.0]), case.data)
-        np.testing.assert_allclose(explained, 1.5 * case.effects[ADHESION] - 2 * case.effects[PLASTICITY], atol=1e-12)
+        explained = case.data.explained([ADHESION, PLASTICITY], [1.5, -2.0])
+        np.testing.assert_allclose(explained, 1.5 * case.linear[ADHESION] - 2 * case.linear[PLASTICITY], atol=1e-12)
 
     def test_effects_without_gain_are_not_proposed(self):
         case = Case()
-        nothing = replace(case.statistics, fits=[EffectFit() for _ in case.statistics.fits], directed=0)
+        nothing = replace(case.statistics, fits=scored(0, 0, 0, 0, 0), directed=0)
         self.assertEqual(case.proposals(nothing), [])
 
 
@@ -121,38 +108,38 @@ class Confirmation(unittest.TestCase):
         self.first = self.case.proposals()[0]
 
     def test_runs_that_agree_with_the_data(self):
-        confirmed, step = self.case.confirmed(self.first, self.case.runs(4 * self.case.effects[FRICTION]))
+        confirmed, step = self.case.confirmed(self.first, self.case.runs(4 * self.case.linear[FRICTION]))
         self.assertEqual(len(step), 2)  # the modulus, then the amplitude
         self.assertGreater(confirmed.confirmed_misfit_p, 0.01)
         self.assertAlmostEqual(confirmed.confirmed_gain, confirmed.gain, delta=0.25 * confirmed.gain)
 
     def test_runs_that_do_not_agree_with_the_data(self):
-        confirmed, _ = self.case.confirmed(self.first, self.case.runs(4 * self.case.effects[PLASTICITY]))
+        confirmed, _ = self.case.confirmed(self.first, self.case.runs(4 * self.case.linear[PLASTICITY]))
         self.assertLess(confirmed.confirmed_misfit_p, 1e-3)
         self.assertLess(confirmed.confirmed_gain, 0.6 * confirmed.gain)
 
     def test_nuisance_shifts_are_penalised_by_their_prior(self):
         # The runs explain the data equally well with a modulus three sigmas off.
-        runs = self.case.runs(4 * self.case.effects[FRICTION])
+        runs = self.case.runs(4 * self.case.linear[FRICTION])
         near, far = (self.case.confirmed(self.first, runs, shift)[0].confirmed_gain for shift in (0, 3))
         self.assertAlmostEqual(near - far, 4.5, 9)
 
     def test_scatter_that_the_data_do_not_show_is_penalised(self):
         # An effect with a large scatter reduces chi-square.
         case = Case()
-        scattering = case.evidence.library.effects[FRICTION]
+        scattering = case.effects[FRICTION]
         scattering.slopes = math.sqrt(0.5) * np.array([[1.0], [-1.0]]) * np.ones(len(scattering.linear))
         self.assertAlmostEqual(scattering.spread()[0], 1, 12)
-        confirmed, _ = case.confirmed(Proposal([FRICTION], [5.0], [0.1]), case.runs(np.zeros_like(case.data.mean)))
+        confirmed, _ = case.confirmed(Proposal([FRICTION], [5.0], [0.1]), case.runs())
         self.assertGreater(confirmed.confirmed_misfit_p, 0.5)
         self.assertLess(confirmed.confirmed_gain, -10)
 
     def test_step_is_the_error_of_the_amplitude(self):
-        _, step = self.case.confirmed(self.first, self.case.runs(3 * self.case.effects[FRICTION], 200))
+        _, step = self.case.confirmed(self.first, self.case.runs(3 * self.case.linear[FRICTION], 200))
         self.assertAlmostEqual(step[1], 1, delta=0.6)  # one sigma of the amplitude is 0.2, and the prior has some influence
 
     def test_failed_runs_are_excluded(self):
-        failed = self.case.runs(4 * self.case.effects[FRICTION], 4)
+        failed = self.case.runs(4 * self.case.linear[FRICTION], 4)
         whole = failed[[0, 1, 3]]
         failed[2, self.case.data.cells[-1]] = np.nan
         (a, step), (b, other) = (self.case.confirmed(self.first, runs) for runs in (failed, whole))
@@ -160,7 +147,7 @@ class Confirmation(unittest.TestCase):
         np.testing.assert_array_equal(step, other)
 
     def test_requires_more_than_one_run(self):
-        failed = self.case.runs(np.zeros_like(self.case.data.mean), 4)
+        failed = self.case.runs(number=4)
         failed[1:] = np.nan
         confirmed, step = self.case.confirmed(self.first, failed)
         self.assertIsNone(step)

@@ -38,8 +38,8 @@ class Signatures(unittest.TestCase):
         s = Signature("", 2, LINEAR, CURVATURE)
         for side in (-1, 1):
             end, slope = parabola(side * 2), LINEAR + side * 4 * CURVATURE
-            assert_allclose(s.at(side * 2), end, rtol=1e-13)
-            assert_allclose(s.at(side * 3.5), end + side * 1.5 * slope, rtol=1e-13)
+            assert_allclose(s.at(side * 2), end, rtol=1e-13, atol=1e-14)
+            assert_allclose(s.at(side * 3.5), end + side * 1.5 * slope, rtol=1e-13, atol=1e-14)
             assert_allclose(s.slope(side * 3.5), slope, rtol=1e-13)
         assert_allclose(s.spread(), 0)
 

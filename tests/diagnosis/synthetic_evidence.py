@@ -1,10 +1,14 @@
 """Evidence without simulations: normal noise of known covariance on a few observables, and given signatures. synthetic_evidence.py"""
 import math
+from functools import cached_property
 
 import numpy as np
 
 from mcdem._engine import Random
-from mcdem.diagnosis.evidence import CandidateRange, Evidence, NuisancePrior
+from mcdem.diagnosis.builder import DiagnosisBuilder
+from mcdem.diagnosis.decision import Limits
+from mcdem.diagnosis.evidence import CandidateRange, Evidence, NuisancePrior, gap_data
+from mcdem.diagnosis.gap_tests import NullDistribution, gap_statistics
 from mcdem.diagnosis.library import Library
 from mcdem.observe.grid import Grid, cells_of
 from mcdem.diagnosis.signature import Signature
@@ -66,13 +70,50 @@ def evidence_of(observed, baseline, library_baseline, packing):
     return Evidence(observed=observed, baseline=baseline, library=library)
 
 
-class TwoEffects:
-    """Two effects of which the first is the cause, and a parameter."""
+class Case:
+    """Effects and parameters with random patterns, a gap from these amplitudes of the effects, and what follows from it."""
 
-    def __init__(self):
-        self.synthetic = SyntheticWorld(6, 3)
-        self.evidence = self.synthetic.evidence(1, 16)
-        self.synthetic.add_effect(self.evidence, "adhesion", self.synthetic.pattern(1))
-        self.synthetic.add_effect(self.evidence, "friction", self.synthetic.pattern(1))
-        self.synthetic.add_nuisance(self.evidence, "modulus", self.synthetic.pattern(0.5), 1)
-        self.evidence.observed += 4 * self.evidence.library.effects[0].linear
+    def __init__(self, *amplitudes, effects=("adhesion", "friction"), size=1.0, parameters=("modulus",), known=6, replicates=32, seed=3):
+        self.world = SyntheticWorld(known, seed)
+        self.evidence = self.world.evidence(1, replicates)
+        for name in effects:
+            self.world.add_effect(self.evidence, name, self.world.pattern(size))
+        for name in parameters:
+            self.world.add_nuisance(self.evidence, name, self.world.pattern(0.5), 1)
+        for amplitude, signature in zip(amplitudes, self.effects):
+            self.evidence.observed += amplitude * signature.linear
+
+    @property
+    def effects(self):
+        return self.evidence.library.effects
+
+    @property
+    def parameters(self):
+        return self.evidence.library.nuisances
+
+    @cached_property
+    def data(self):
+        return gap_data(self.evidence)
+
+    @cached_property
+    def space(self):
+        return self.data.space()
+
+    @cached_property
+    def null(self):
+        return NullDistribution(self.data, 1)
+
+    @cached_property
+    def statistics(self):
+        return gap_statistics(self.space, self.data, self.data.gap)
+
+    def builder(self):
+        return DiagnosisBuilder(self.evidence, Limits())
+
+    def diagnosis(self):
+        return self.builder().diagnosis()
+
+    def runs(self, shift=0.0, number=16):
+        """Runs of the scene that differ by `shift` from the baseline."""
+        centre = self.evidence.baseline.mean(axis=0) + shift
+        return np.array([centre + self.world.noise() for _ in range(number)])

@@ -14,6 +14,11 @@ def finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
+def compact_json(document: Any) -> str:
+    """In one line, keys sorted: the same text for the same document. All numbers must be finite."""
+    return json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+
+
 def json_text(document: Any, sort_keys: bool = False) -> str:
     """Indented, with a final line feed; what was invalid UTF-8 becomes replacement characters. All numbers must be finite."""
     text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False, sort_keys=sort_keys)

@@ -10,9 +10,8 @@ from .detection_limits import detection_limits
 from .diagnosis_types import Diagnosis, Explanation, Gap, GapReduction, NuisanceFit, Verdict, millimetres
 from .effects import is_numerical
 from .evidence import Evidence, GapData, gap_data
-from .gap_reduction import (FITTED_PART, PartialFit, Split, fit_part, held_out_gap, held_out_placebo, held_out_reduction, measure_reduction,
-                            reduction_by_runs, refit_part, split_cells, stepped, whole_placebo)
-from .gap_space import CellChoice, GapSpace, without
+from .gap_reduction import FITTED_PART, HeldOutTest, PartialFit, fit_part, refit_part, stepped, whole_placebo
+from .gap_space import CellChoice, without
 from .gap_tests import NullDistribution, gap_statistics
 from .location import locate
 from .next_steps import ProtocolRuns, next_measurements, power_of_protocol
@@ -20,7 +19,7 @@ from .not_measured import not_measured
 from ..observe.grid import cells_of
 from ..observe.observation import MIN_CELLS
 from .packings import packing_agreements
-from .proposals import confirm, explained_by, propose, whole_runs
+from .proposals import confirm, propose, whole_runs
 from .rearrangements import PlaceLeftOut, p_of_gap, p_without_one_place, places_left_out, without_place
 
 WORTH_ANOTHER_RUN = 0.01  # another run is worthwhile if the p of the remainder is smaller
@@ -69,16 +68,15 @@ class DiagnosisBuilder:
     def __init__(self, evidence: Evidence, limits: Limits) -> None:
         self._evidence, self._limits = evidence, limits
         self.data = data = _checked_data(evidence)
-        self._mean_of = len(evidence.baseline)  # number of replicates in the baseline's mean
-        self._space = GapSpace(data.noise, self._mean_of, data.cells, data.free)
-        self._null = NullDistribution(data, self._mean_of, evidence.seed)
+        self._space = data.space()
+        self._null = NullDistribution(data, evidence.seed)
         self._statistics = gap_statistics(self._space, data, data.gap)
-        self._split = split_cells(data.cells, evidence.library.grid)
+        self._test = HeldOutTest.split(data, evidence.library.grid)
         self._places: list[PlaceLeftOut] = []  # if there is a gap
         names = [data.name(c) for c in range(len(data.candidates))]
         self.findings = Findings(p_value=self._p_of_gap(), names=names, effects=data.effects,
                                  gain=[fit.score for fit in self._statistics.fits],
-                                 proposals=propose(self._space, data, self._null, self._statistics, self._mean_of),
+                                 proposals=propose(self._space, data, self._null, self._statistics),
                                  numerics=[c for c in range(data.effects) if is_numerical(names[c])])
         self._tried = [_Tried(self._first_fit(proposal)) for proposal in self.findings.proposals]
         self._measure_reductions()
@@ -88,29 +86,29 @@ class DiagnosisBuilder:
         p = p_of_gap(self._null, self._statistics)
         if p >= self._limits.false_alarm:
             return p
-        self._places = places_left_out(self.data, self._mean_of, self._evidence.seed)
-        return max(p, p_without_one_place(self._places, self.data, self._mean_of))
+        self._places = places_left_out(self.data, self._evidence.seed)
+        return max(p, p_without_one_place(self._places))
 
     def _first_fit(self, proposal: Proposal) -> PartialFit:
         space = self._space.lacking(self.data.lacking(proposal.candidates))
-        nuisances = space.fit_nuisances(self.data.gap - explained_by(proposal, self.data))
+        nuisances = space.fit_nuisances(self.data.gap - self.data.explained(proposal.candidates, proposal.amplitudes))
         return PartialFit(proposal.amplitudes, self.data.in_range(nuisances))
 
     def _measure_reductions(self) -> None:
         """Computes the reductions of all proposals and of a placebo from signatures."""
         findings, data, seed = self.findings, self.data, self._evidence.seed
-        held_out = held_out_gap(data, self._split, self._mean_of)
+        held_out = self._test.gap()
         findings.held_out = held_out.shows()
         findings.held_out_noise = held_out.noise / held_out.size if findings.held_out else 0
         # Gain in log likelihood if the whole gap were explained.
         self._excess = max(self._statistics.directed, 0.5 * (self._statistics.omnibus - self._null.mean("omnibus")))
         if not self._excess > 0:
             return
-        findings.placebo = (held_out_placebo(data, self._split, self._mean_of, seed) if findings.held_out
+        findings.placebo = (self._test.placebo(seed) if findings.held_out
                             else whole_placebo(self._space, data, self._excess, seed))
         for proposal in findings.proposals:
             proposal.reduction = (self._likelihood_reduction(proposal.gain) if self._by_likelihood(proposal)
-                                  else held_out_reduction(data, self._split, proposal.candidates, self._mean_of))
+                                  else self._test.reduction(proposal.candidates))
 
     def _by_likelihood(self, proposal: Proposal) -> bool:
         """Whether the reduction is measured by likelihood: nuisances refitted within their priors leave no gap to measure otherwise."""
@@ -164,12 +162,12 @@ class DiagnosisBuilder:
         state.whole = stepped(self.data, tried.candidates, before, state.step)
         return list(state.whole.amplitudes) != list(before.amplitudes)
 
-    def _split_of(self, proposal: Proposal) -> Split:
+    def _test_of(self, proposal: Proposal) -> HeldOutTest:
         """Without the place that is left out for this proposal."""
-        place = proposal.left_out
+        place, test = proposal.left_out, self._test
         if place is None:
-            return self._split
-        return Split(*(without_place(cells, place, len(self.data.gap)) for cells in (self._split.fitted, self._split.held_out)))
+            return test
+        return HeldOutTest(self.data, *(without_place(cells, place, len(self.data.gap)) for cells in (test.fitted, test.held_out)))
 
     def wants_held_out(self) -> int | None:
         """The next proposal that needs runs with part_fit(), because the verdict depends on how much of the held-out gap they take
@@ -181,12 +179,12 @@ class DiagnosisBuilder:
 
     def part_fit(self, proposal: int) -> PartialFit:
         """Parameters fitted to the data that are not held out, from real runs of the proposal if there are any."""
-        return self._refit(proposal, self._split.fitted if len(self._split.fitted) else self.data.cells)
+        return self._refit(proposal, self._test.fitted if len(self._test.fitted) else self.data.cells)
 
     def _refit(self, proposal: int, cells: CellChoice) -> PartialFit:
         candidates, runs = self.findings.proposals[proposal].candidates, self._tried[proposal].runs
         if runs is None:
-            return fit_part(self.data, cells, self.data.gap, candidates, self._mean_of)
+            return fit_part(self.data, cells, self.data.gap, candidates)
         return refit_part(self.data, cells, self._evidence.observed - runs.mean, candidates, runs.fit, runs.count)
 
     def confirm_held_out(self, proposal: int, runs: Floats) -> None:
@@ -194,8 +192,8 @@ class DiagnosisBuilder:
         self._tried[proposal].held_out_done = True
         tried = self.findings.proposals[proposal]
         if not self._by_likelihood(tried):
-            tried.confirmed_reduction = reduction_by_runs(self.data, self._split_of(tried), self._evidence.observed, runs, self._mean_of,
-                                                          self.data.lacking(tried.candidates))
+            tried.confirmed_reduction = self._test_of(tried).reduction_by_runs(self._evidence.observed, runs,
+                                                                               self.data.lacking(tried.candidates))
         self.decision = decide(self.findings, self._limits)
 
     def has_decided(self) -> bool:
@@ -258,7 +256,7 @@ class DiagnosisBuilder:
     def _reduction(self) -> GapReduction:
         """Of the decided proposal."""
         explaining, margin = self.findings.proposals[self.decided()], self._limits.reduction_margin
-        made = measure_reduction(self.data, self._split_of(explaining), explaining, self._mean_of, self._evidence.seed)
+        made = self._test_of(explaining).measured(explaining.candidates, self._evidence.seed)
         return replace(made, placebo=self.findings.placebo, interval=(made.interval[0] - margin, min(1.0, made.interval[1] + margin)),
                        fitted_displacement_mm=(0, millimetres(FITTED_PART * self._evidence.library.grid.stroke)),
                        confirmed=None if self._by_likelihood(explaining) else explaining.confirmed_reduction)

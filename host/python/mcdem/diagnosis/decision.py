@@ -147,7 +147,7 @@ def _needed_reduction(proposal: Proposal, findings: Findings, limits: Limits) ->
     return max(known, findings.placebo + limits.over_placebo)
 
 
-def _takes_the_gap_away(proposal: Proposal, findings: Findings, limits: Limits) -> bool:
+def _reduces_enough(proposal: Proposal, findings: Findings, limits: Limits) -> bool:
     return proposal.best_reduction() >= _needed_reduction(proposal, findings, limits)
 
 
@@ -158,7 +158,7 @@ def _allowed_remainder(proposal: Proposal, limits: Limits) -> float:
     return limits.form_remainder if p < limits.another_form else limits.remainder if p < limits.misfit else 1.0
 
 
-def _leaves_too_much(proposal: Proposal, limits: Limits) -> bool:
+def _remainder_exceeds_limit(proposal: Proposal, limits: Limits) -> bool:
     return 1 - proposal.best_reduction() > _allowed_remainder(proposal, limits)
 
 
@@ -180,7 +180,7 @@ def _trust(proposal: Proposal, findings: Findings, limits: Limits) -> float:
     above = min(max((proposal.best_reduction() - low) / (limits.doubt_below + limits.certain_above), 0.0), 1.0)
     most = limits.right_form if proposal.best_misfit() < limits.another_form else limits.right_above
     right = limits.right_below + above * (most - limits.right_below)
-    refused = not _takes_the_gap_away(proposal, findings, limits) or _leaves_too_much(proposal, limits)
+    refused = not _reduces_enough(proposal, findings, limits) or _remainder_exceeds_limit(proposal, limits)
     return min(right, limits.right_refused) if refused else right
 
 
@@ -201,11 +201,11 @@ def _proposal_of(candidate: int, findings: Findings) -> int:
     return next((k for k, proposal in enumerate(findings.proposals) if proposal.candidates == [candidate]), -1)
 
 
-def _those_that_do(group: list[int], findings: Findings, limits: Limits) -> list[int]:
+def _without_refuted(group: list[int], findings: Findings, limits: Limits) -> list[int]:
     """Without members of the group that were tried and take away too little of the gap, even if their likelihood is close."""
     tried = {candidate: _proposal_of(candidate, findings) for candidate in group[1:]}
     return [group[0], *(candidate for candidate, k in tried.items()
-                        if k < 0 or _takes_the_gap_away(findings.proposals[k], findings, limits))]
+                        if k < 0 or _reduces_enough(findings.proposals[k], findings, limits))]
 
 
 def _suspected(decision: Decision, findings: Findings) -> Verdict | None:
@@ -223,12 +223,12 @@ def _suspected(decision: Decision, findings: Findings) -> Verdict | None:
     return None
 
 
-def _name_it(decision: Decision, findings: Findings, limits: Limits) -> None:
+def _name_effect(decision: Decision, findings: Findings, limits: Limits) -> None:
     suspected = _suspected(decision, findings)
     chosen = chosen_proposal(findings, decision)
     if suspected:
         decision.verdict = suspected
-    elif _leaves_too_much(chosen, limits):
+    elif _remainder_exceeds_limit(chosen, limits):
         decision.verdict = Verdict.unknown_effect
     else:
         decision.verdict = Verdict.group if not chosen.is_pair() and len(decision.group) > 1 else Verdict.effect
@@ -242,14 +242,14 @@ def _chosen(findings: Findings, single: int, group: list[int], limits: Limits) -
     leader = findings.proposals[single]
     pair = _gaining_pair(findings, leader.best_gain(), limits)
     two = findings.proposals[pair]
-    if pair >= 0 and _takes_the_gap_away(two, findings, limits) and _is_better(two, leader, limits):
+    if pair >= 0 and _reduces_enough(two, findings, limits) and _is_better(two, leader, limits):
         decision.proposal, decision.group = pair, list(two.candidates)
-    elif _takes_the_gap_away(leader, findings, limits):
-        decision.group = _those_that_do(group, findings, limits)
+    elif _reduces_enough(leader, findings, limits):
+        decision.group = _without_refuted(group, findings, limits)
     else:
         decision.verdict = Verdict.unknown_effect
         return decision
-    _name_it(decision, findings, limits)
+    _name_effect(decision, findings, limits)
     return decision
 
 

@@ -8,7 +8,7 @@ from .decision import Limits
 from .diagnosis_types import DetectionLimit
 from .evidence import Evidence, GapData
 from .gap_space import GapSpace
-from .gap_tests import NullDistribution, fits_of_many
+from .gap_tests import NullDistribution, fits_of_singles
 from .signature import Signature
 
 POWER_OF_FOUR_FIFTHS = 0.842  # standard normal quantile
@@ -43,7 +43,7 @@ def detection_limits(space: GapSpace, data: GapData, null: NullDistribution, evi
     refitted nuisances absorb, and the effects that cannot be distinguished from it at twice that amplitude."""
     threshold = null.quantile("directed", 0.5 * limits.false_alarm)  # Bonferroni correction for two tests
     wanted = 0.5 * (math.sqrt(2 * threshold) + POWER_OF_FOUR_FIFTHS) ** 2
-    fixed = GapSpace(data.noise, len(evidence.baseline), data.cells, [])
+    fixed = data.space(free=[])
     return [_limit(c, space, fixed, data, evidence.candidates[c].unit, wanted, limits) for c in range(data.effects)]
 
 
@@ -54,9 +54,8 @@ def _limit(c: int, whole: GapSpace, whole_fixed: GapSpace, data: GapData, unit: 
     up, down = (_smallest_amplitude(refitted, end, wanted) for end in (candidate.high, candidate.low))
     probe = up if math.isfinite(up) else candidate.high
     alone = _expected_gain(fixed, probe)
-    _, scores = fits_of_many(space, data.candidates, signature.at(min(2 * probe, candidate.high))[None])
-    behind = (scores[c] - scores).ravel()
-    alike = np.flatnonzero(behind <= limits.group_margin(float(scores[c, 0])))
+    scores = fits_of_singles(space, data, signature.at(min(2 * probe, candidate.high))[None]).scores[:, 0]
+    alike = np.flatnonzero(scores[c] - scores <= limits.group_margin(float(scores[c])))
     return DetectionLimit(
         effect=data.name(c), unit=unit, minimum_amplitude=abs(down) if abs(down) < abs(up) else up,
         absorbed_by_calibration=1 - _expected_gain(refitted, probe) / alone if alone > 0 else 0.0,

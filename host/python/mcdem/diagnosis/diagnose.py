@@ -15,7 +15,7 @@ from .diagnosis_types import Diagnosis, GapReduction, NextStep, Refinement, Verd
 from .effects import depends_on_speed
 from .evidence import CandidateRange, Evidence, NuisancePrior, PackingEvidence, leave_out_failures, mean_over_packings, take_means
 from .gap_reduction import PartialFit
-from .inference import Inference
+from .inference import Inference, Runs
 from .library import Library, write_library
 from .library_origin import expect_alike_loads
 from .library_simulations import build_library, fitting_library
@@ -120,10 +120,13 @@ class _Diagnosing:
     def _confirm(self, inference: Inference) -> None:
         """Real runs of what may explain the gap, until the verdict needs no more."""
         while runs := inference.next_runs():
-            fits = [self._amplitudes(inference, proposal, fit) for proposal, fit in runs.fits]
-            if self.has_metrics and runs.purpose == "held-out confirmation":
-                self.simulations.record(fits[0], self.options.confirmations, self._stage("recordings"))
-            inference.add(self._simulate(fits, runs.purpose))
+            inference.add(self._simulated(inference, runs))
+
+    def _simulated(self, inference: Inference, runs: Runs) -> list[Floats]:
+        fits = [self._amplitudes(inference, proposal, fit) for proposal, fit in runs.fits]
+        if self.has_metrics and runs.purpose == "held-out confirmation":
+            self.simulations.record(fits[0], self.options.confirmations, self._stage("recordings"))
+        return self._simulate(fits, runs.purpose)
 
     def _simulate(self, fits: list[Amplitudes], stage: str, protocol: int | None = None) -> list[Floats]:
         """(confirmations, cells) for each fit: means over the packings."""

@@ -1,20 +1,17 @@
 """Maximum-likelihood amplitudes of one or several effects for a gap, and their gain over no effect."""
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 
 import numpy as np
 
 from ..results.recording import Floats
-from .amplitude_search import COARSE_STEPS, GOLDEN, TOLERANCE
+from .amplitude_search import Misfit
 from .gap_space import CellChoice, GapSpace
 from .signature import Signature
 
-# Amplitudes are optimised in turn until none changes by more than this fraction of its range. Signatures with a correlation of 0.99 need a
-# hundred rounds.
-UNMOVED = 1e-5
-MAX_ROUNDS = 200
+SHOWN = 1e-300  # Fisher information of an effect of which the data show anything
 
 
 def no_cells() -> CellChoice:
@@ -35,142 +32,104 @@ class Candidate:
     lacking: CellChoice = field(default_factory=no_cells)
 
 
-def lacking_cells(candidates: Sequence[Candidate]) -> CellChoice:
+Candidates = Sequence[Candidate]  # that are fitted together
+
+
+def lacking_cells(candidates: Candidates) -> CellChoice:
     """Cells that one of the candidates lacks."""
     return reduce(np.union1d, (candidate.lacking for candidate in candidates if len(candidate.lacking)), no_cells())
 
 
+def explained_by(candidates: Candidates, amplitudes: Floats | Sequence[float], all_cells: int) -> Floats:
+    """(.., all cells) sum of the signatures at their amplitudes (.., candidates)."""
+    each = np.moveaxis(np.asarray(amplitudes, float), -1, 0)
+    explained: Floats = np.zeros((*each.shape[1:], all_cells))
+    for one, amplitude in zip(candidates, each, strict=True):
+        explained += one.signature.at(amplitude)
+    return explained
+
+
 @dataclass(frozen=True)
 class EffectFit:
-    amplitude: float = 0.0
-    error: float = 0.0  # one sigma, from the slope of the signature at the amplitude; infinite: the data do not show the effect
-    score: float = 0.0  # gain in log likelihood over amplitude zero, with nuisances marginalised in both
-    at_bound: bool = False
+    """Joint fit of one or several effects.
 
-
-@dataclass(frozen=True)
-class JointFit:
-    """Joint fit of several effects.
-
-    The errors include the uncertainty of the other amplitudes. They are all infinite if the data do not show one of the effects or cannot
-    distinguish them.
+    The errors (one sigma, from the slopes of the signatures) include the uncertainty of the other amplitudes. They are all infinite if the
+    data do not show one of the effects or cannot distinguish them.
     """
 
-    amplitudes: list[float]  # one per candidate
-    errors: list[float]
-    score: float  # like EffectFit.score
+    amplitudes: Sequence[float] = (0.0,)  # one per candidate
+    errors: Sequence[float] = (0.0,)
+    score: float = 0.0  # gain in log likelihood over no effect, with nuisances marginalised in both
+
+    @property
+    def amplitude(self) -> float:
+        """Of the first candidate."""
+        return self.amplitudes[0]
+
+    @property
+    def error(self) -> float:
+        return self.errors[0]
 
 
-def minimum(misfit: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
-    """Place and value of a minimum between the bounds (Brent 1973, as boost::math::tools::brent_find_minima)."""
-    x = w = v = high
-    fx = fw = fv = misfit(x)
-    step = before = 0.0  # the last one, and the one before it
-    while True:
-        middle = (low + high) / 2
-        least = TOLERANCE * abs(x) + TOLERANCE / 4
-        if abs(x - middle) <= 2 * least - (high - low) / 2:
-            return x, fx
-        parabolic = False
-        if abs(before) > least:
-            r, q = (x - w) * (fx - fv), (x - v) * (fx - fw)
-            p, q = (x - v) * q - (x - w) * r, 2 * (q - r)
-            p, q = -p if q > 0 else p, abs(q)
-            parabolic = abs(p) < abs(q * before / 2) and q * (low - x) < p < q * (high - x)
-        if parabolic:
-            before, step = step, p / q
-            if x + step - low < 2 * least or high - x - step < 2 * least:
-                step = math.copysign(least, middle - x)
-        else:
-            before = (low if x >= middle else high) - x
-            step = GOLDEN * before
-        u = x + (step if abs(step) >= least else least if step > 0 else -least)
-        fu = misfit(u)
-        if fu <= fx:
-            low, high = (x, high) if u >= x else (low, x)
-            v, w, x, fv, fw, fx = w, x, u, fw, fx, fu
-            continue
-        low, high = (u, high) if u < x else (low, u)
-        if fu <= fw or w == x:
-            v, w, fv, fw = w, u, fw, fu
-        elif fu <= fv or v in (x, w):
-            v, fv = u, fu
+@dataclass(frozen=True, eq=False)
+class Fits:
+    """Fits of many gaps by many combinations of n candidates."""
+
+    amplitudes: Floats  # (combinations, gaps, n)
+    scores: Floats  # (combinations, gaps)
+    information: Floats  # (combinations, gaps, n, n) Fisher information of the amplitudes
+
+    def of(self, combination: int) -> EffectFit:
+        """Of the first gap."""
+        errors = _errors(self.information[combination, 0])
+        return EffectFit(self.amplitudes[combination, 0].tolist(), errors, float(self.scores[combination, 0]))
 
 
-def _terms(signature: Signature, a: float) -> tuple[float, float]:
-    """Minus the factors of `linear` and `curvature` in Signature.at."""
-    inside = signature.within_reach(a)
-    return -a, -inside * (2 * a - inside)
+def fits_of_many(space: GapSpace, combinations: Sequence[Candidates], gaps: Floats) -> Fits:
+    """`combinations`: each of the same number n of candidates. `gaps`: (gaps, all cells) observed minus model."""
+    count, n = len(combinations), len(combinations[0]) if combinations else 0
+    fits = Fits(np.zeros((count, len(gaps), n)), np.zeros((count, len(gaps))), np.zeros((count, len(gaps), n, n)))
+    by_lacking: dict[bytes, list[int]] = {}
+    lacking = [lacking_cells(candidates) for candidates in combinations]
+    for k, cells in enumerate(lacking):
+        by_lacking.setdefault(cells.tobytes(), []).append(k)
+    for chosen in by_lacking.values():
+        misfit = _misfit(space.lacking(lacking[chosen[0]]), [combinations[k] for k in chosen], gaps)
+        best = misfit.best()
+        fits.amplitudes[chosen] = best.reshape(len(chosen), len(gaps), n)
+        fits.scores[chosen] = 0.5 * (misfit.square - misfit.at(best)).reshape(len(chosen), len(gaps))
+        fits.information[chosen] = misfit.information(best).reshape(len(chosen), len(gaps), n, n)
+    return fits
 
 
-class _Misfit:
-    """-2 log likelihood as a function of the amplitudes, from products of the whitened gap and the terms of the signatures."""
+def _misfit(space: GapSpace, combinations: Sequence[Candidates], gaps: Floats) -> Misfit:
+    """Lanes: combinations, then gaps."""
+    count, n = len(combinations), len(combinations[0])
+    of_all = [term for candidates in combinations for one in candidates for term in (one.signature.linear, one.signature.curvature)]
+    terms = space.whiten(np.reshape(of_all, (count, 2 * n, gaps.shape[1])))
+    gap = space.whiten(gaps)
+    limits = np.array([[(one.signature.reach, one.low, one.high) for one in candidates] for candidates in combinations], float)
+    reach, low, high = np.repeat(limits.reshape(count, n, 3), len(gaps), axis=0).transpose(2, 0, 1)
+    return Misfit(np.tile((gap**2).sum(axis=1), count), (gap @ terms.swapaxes(1, 2)).reshape(count * len(gaps), 2 * n),
+                  np.repeat(terms @ terms.swapaxes(1, 2), len(gaps), axis=0), reach, low, high)
 
-    def __init__(self, space: GapSpace, candidates: Sequence[Candidate], gap: Floats) -> None:
-        self._candidates = candidates
-        terms = [gap] + [term for one in candidates for term in (one.signature.linear, one.signature.curvature)]
-        basis = np.array([term[space.cells] for term in terms]) @ space.whitener.T
-        self._products = basis @ basis.T
-        # For each candidate: the amplitudes of a coarse search, their terms, and the part of the misfit due to these alone.
-        self._coarse = [self._grid(k) for k in range(len(candidates))]
 
-    def _grid(self, k: int) -> tuple[Floats, Floats, Floats]:
-        one = self._candidates[k]
-        grid = one.low + np.arange(COARSE_STEPS + 1) * ((one.high - one.low) / COARSE_STEPS)
-        inside = np.minimum(np.maximum(grid, -one.signature.reach), one.signature.reach)
-        terms = np.array([-grid, -inside * (2 * grid - inside)])
-        return grid, terms, (terms * (self._products[1 + 2 * k : 3 + 2 * k, 1 + 2 * k : 3 + 2 * k] @ terms)).sum(axis=0)
+def _errors(information: Floats) -> list[float]:
+    n = len(information)
+    if not (information.diagonal() > SHOWN).all() or n > 1 and np.linalg.matrix_rank(information, hermitian=True) < n:
+        return [math.inf] * n
+    errors: list[float] = np.sqrt(np.linalg.inv(information).diagonal()).tolist()
+    return errors
 
-    def _factors(self, amplitudes: Sequence[float]) -> list[float]:
-        """Of the terms of the difference between gap and signatures."""
-        return [1.0] + [factor for one, a in zip(self._candidates, amplitudes) for factor in _terms(one.signature, a)]
 
-    def at(self, amplitudes: Sequence[float]) -> float:
-        c = np.array(self._factors(amplitudes))
-        return float(c.dot(self._products.dot(c)))
+def fit_effects(space: GapSpace, candidates: Candidates, gap: Floats) -> EffectFit:
+    """`gap`: observed minus model, all cells."""
+    return fits_of_many(space, [candidates], gap[None]).of(0)
 
-    def information(self, amplitudes: Sequence[float]) -> Floats:
-        """Fisher information of the amplitudes: products of the whitened slopes of their signatures."""
-        slopes = np.zeros((len(self._products), len(amplitudes)))
-        for k, (one, a) in enumerate(zip(self._candidates, amplitudes)):
-            slopes[1 + 2 * k : 3 + 2 * k, k] = 1, 2 * one.signature.within_reach(a)
-        information: Floats = slopes.T @ self._products @ slopes
-        return information
 
-    def best_amplitude(self, amplitudes: Sequence[float], k: int) -> float:
-        """The best amplitude `k` with the others fixed."""
-        one, first = self._candidates[k], 1 + 2 * k
-        c = self._factors(amplitudes)
-        c[first : first + 2] = 0, 0
-        forces = self._products @ c
-        constant, f, g = float(forces @ c), float(2 * forces[first]), float(2 * forces[first + 1])
-        (ff, fg), (_, gg) = self._products[first : first + 2, first : first + 2].tolist()
-        reach = one.signature.reach
-
-        def misfit(a: float) -> float:
-            inside = a if -reach <= a <= reach else math.copysign(reach, a)
-            y = -inside * (2 * a - inside)
-            return float(constant - a * f + y * g + a * a * ff - 2 * a * y * fg + y * y * gg)
-
-        grid, terms, alone = self._coarse[k]
-        coarse = constant + f * terms[0] + g * terms[1] + alone
-        lowest, at_zero = int(coarse.argmin()), misfit(0)
-        best = float(grid[lowest]) if coarse[lowest] < at_zero else 0.0
-        step = (one.high - one.low) / COARSE_STEPS
-        amplitude, value = minimum(misfit, max(one.low, best - step), min(one.high, best + step))
-        return amplitude if value < at_zero else 0.0
-
-    def best_amplitudes(self) -> list[float]:
-        amplitudes = [0.0] * len(self._candidates)
-        for _ in range(MAX_ROUNDS):
-            moved = False
-            for k, one in enumerate(self._candidates):
-                before = amplitudes[k]
-                amplitudes[k] = self.best_amplitude(amplitudes, k)
-                moved |= abs(amplitudes[k] - before) > UNMOVED * (one.high - one.low)
-            if not moved or len(amplitudes) == 1:
-                break
-        return amplitudes
+def fit_effect(space: GapSpace, candidate: Candidate, gap: Floats) -> EffectFit:
+    """`gap`: observed minus model, all cells."""
+    return fit_effects(space, [candidate], gap)
 
 
 def draw_error(space: GapSpace, candidate: Candidate, amplitude: float) -> float:
@@ -188,38 +147,3 @@ def draw_error(space: GapSpace, candidate: Candidate, amplitude: float) -> float
     of_pair = space.whiten(signature.slopes) @ slope / information  # amplitude of each pair relative to the mean
     chaos = 2 / (information * signature.reach**2)
     return abs(amplitude) * math.sqrt(max(0.0, float(of_pair.var(ddof=1)) - chaos) * (1 + 1 / pairs))
-
-
-def _invertible(matrix: Floats) -> bool:
-    """Whether all pivots of a symmetric matrix without negative eigenvalues exceed the error of rounding (as Eigen::FullPivLU)."""
-    least = np.finfo(float).eps * len(matrix) * matrix.diagonal().max()
-    while len(matrix):
-        i = int(matrix.diagonal().argmax())
-        if not matrix[i, i] > least:
-            return False
-        matrix = np.delete(np.delete(matrix - np.outer(matrix[:, i] / matrix[i, i], matrix[i]), i, 0), i, 1)
-    return True
-
-
-def _errors(information: Floats) -> list[float]:
-    count = len(information)
-    if not information.diagonal().min(initial=math.inf) > 1e-300 or (count > 1 and not _invertible(information)):
-        return [math.inf] * count
-    errors: list[float] = np.sqrt(np.linalg.inv(information).diagonal() if count != 1 else 1 / information[0]).tolist()
-    return errors
-
-
-def fit_effects(space: GapSpace, candidates: Sequence[Candidate], gap: Floats) -> JointFit:
-    """`gap`: observed minus model, all cells."""
-    misfit = _Misfit(space.lacking(lacking_cells(candidates)), candidates, gap)
-    amplitudes = misfit.best_amplitudes()
-    score = 0.5 * (misfit.at([0.0] * len(candidates)) - misfit.at(amplitudes))
-    return JointFit(amplitudes, _errors(misfit.information(amplitudes)), score)
-
-
-def fit_effect(space: GapSpace, candidate: Candidate, gap: Floats) -> EffectFit:
-    """`gap`: observed minus model, all cells."""
-    alone = fit_effects(space, [candidate], gap)
-    amplitude, margin = alone.amplitudes[0], 1e-3 * (candidate.high - candidate.low)
-    beyond = candidate.low != 0 if amplitude < candidate.low + margin else amplitude > candidate.high - margin
-    return EffectFit(amplitude, alone.errors[0], alone.score, amplitude != 0 and beyond)

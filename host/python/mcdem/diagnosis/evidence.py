@@ -12,9 +12,9 @@ import numpy as np
 from ..errors import InputError
 from ..results.recording import Bools, Floats, Ints
 from .diagnosis_types import MissingBins
-from .effect_fit import Candidate
+from .effect_fit import Candidate, explained_by
 from .effect_fit import lacking_cells as lacking_of_any
-from .gap_space import CellChoice, FreeParameter, lacking_cells, usable_cells, without
+from .gap_space import CellChoice, FreeParameter, GapSpace, lacking_cells, usable_cells, without
 from .library import Library, apart_from_mean, mean_groups, scatter
 from .signature import Signature, rows_with_numbers
 
@@ -86,15 +86,29 @@ class GapData:
     noise: Floats  # (rows, all cells) scatter of one replicate; for several packings, of their mean
     group: Ints  # (rows,) rows with a common mean (library.py)
     fold: Ints  # (rows,) rows that are left out together, those of one packing
+    mean_of: int  # number of replicates in the mean
     free: list[FreeParameter]
     candidates: list[Candidate]  # effects, then nuisances beyond their priors; signatures that lack cells are zero there
     effects: int = 0  # number of effects among them
     packings: int = 1  # number of packings in the gap
     missing: list[MissingBins] = field(default_factory=list)  # what lacks cells that the experiment has
 
-    def lacking(self, chosen: Sequence[int]) -> CellChoice:
+    def lacking(self, candidates: Sequence[int]) -> CellChoice:
         """Cells that one of these candidates lacks."""
-        return lacking_of_any([self.candidates[c] for c in chosen])
+        return lacking_of_any(self.chosen(candidates))
+
+    def space(self, cells: CellChoice | None = None, free: Sequence[FreeParameter] | None = None, *, noise: Floats | None = None,
+              mean_of: int | None = None, extra: Floats | None = None) -> GapSpace:
+        """The space of the gap, or of other cells, free parameters, noise, or runs in the mean. `extra`: (all cells,) additional variance."""
+        return GapSpace(self.noise if noise is None else noise, self.mean_of if mean_of is None else mean_of,
+                        self.cells if cells is None else cells, self.free if free is None else free, extra)
+
+    def chosen(self, candidates: Sequence[int]) -> list[Candidate]:
+        return [self.candidates[c] for c in candidates]
+
+    def explained(self, candidates: Sequence[int], amplitudes: Floats | Sequence[float]) -> Floats:
+        """(.., all cells) sum of their signatures at amplitudes (.., candidates)."""
+        return explained_by(self.chosen(candidates), amplitudes, len(self.mean))
 
     def name(self, candidate: int) -> str:
         return self.candidates[candidate].signature.name
@@ -224,6 +238,7 @@ def gap_data(evidence: Evidence) -> GapData:
         cells=usable_cells(evidence.library.baseline, parameters, gap), mean=mean, gap=gap,
         noise=scatter(evidence.library) / math.sqrt(evidence.packing_count()),
         group=np.array(mean_groups(evidence.library), dtype=np.int64), fold=_folds_of(evidence.library.packing),
+        mean_of=len(evidence.baseline),
         free=[FreeParameter(signature.linear, prior.sigma) for signature, prior in zip(parameters, evidence.nuisances)],
         candidates=candidates, effects=len(candidates), packings=evidence.packing_count())
     data.missing = _missing_bins(evidence, data)

@@ -2,7 +2,6 @@
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,20 +58,10 @@ def without(cells: CellChoice, others: CellChoice) -> CellChoice:
     return cells[~np.isin(cells, others)] if len(others) else cells
 
 
-def pick(all: Floats, cells: CellChoice) -> Floats:
-    """(.., cells) of (.., all), in the order of `cells`."""
-    return all[..., cells]
-
-
 def resolutions(cells: CellChoice, all: int) -> Floats:
     """(cells,) Observable.resolution of each selected cell, of `all` cells."""
-    chosen: Floats = _resolution()[cells // cells_each(all)]
+    chosen: Floats = np.array([observable.resolution for observable in observables()])[cells // cells_each(all)]
     return chosen
-
-
-@cache
-def _resolution() -> Floats:
-    return np.array([observable.resolution for observable in observables()])
 
 
 def _moderated(variance: Floats, cells: CellChoice, noise: Floats) -> Floats:
@@ -118,7 +107,7 @@ class GapSpace:
             variance = variance + extra[self.cells]
         np.fill_diagonal(self._covariance, variance)
         self.sigma = np.sqrt(_moderated(variance, self.cells, noise))
-        self._directions = np.array([pick(one.direction, self.cells) for one in free]).reshape(len(free), len(self.cells))
+        self._directions = np.array([one.direction[self.cells] for one in free]).reshape(len(free), len(self.cells))
         self._priors = np.array([one.sigma for one in free], float)
         self._factorise()
 
@@ -156,7 +145,7 @@ class GapSpace:
 
     def whiten(self, all: Floats) -> Floats:
         """(.., cells) whitened difference; its square is a chi-square of the gap with nuisances marginalised."""
-        return pick(all, self.cells) @ self.whitener.T
+        return all[..., self.cells] @ self.whitener.T
 
     def log_likelihood(self, all: Floats) -> Floats:
         """(..) marginal log likelihood of a difference, up to a constant that depends on the number of cells."""
@@ -165,7 +154,7 @@ class GapSpace:
 
     def fit_nuisances(self, all: Floats) -> Floats:
         """(.., free) most probable values of the nuisances for a difference."""
-        nuisances: Floats = pick(all, self.cells) @ self._gain.T
+        nuisances: Floats = all[..., self.cells] @ self._gain.T
         return nuisances
 
     def nuisance_errors(self) -> Floats:
@@ -175,7 +164,7 @@ class GapSpace:
 
     def refitted(self, all: Floats) -> Floats:
         """(.., cells) difference minus the contribution of the most probable nuisances."""
-        left: Floats = pick(all, self.cells) - self.fit_nuisances(all) @ self._directions
+        left: Floats = all[..., self.cells] - self.fit_nuisances(all) @ self._directions
         return left
 
     def sigma_of(self, weights: Floats) -> float:

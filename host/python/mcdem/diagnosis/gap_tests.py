@@ -1,7 +1,6 @@
 """Tests for a gap: an omnibus test (any difference) and a directed test (a difference similar to a known effect), both ranked against
 replicates that go through the same comparison."""
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,8 +8,7 @@ from scipy.stats import t as students_t
 
 from .._engine import Random
 from ..results.recording import Bools, Floats, Ints
-from .amplitude_search import Misfit
-from .effect_fit import Candidate, EffectFit, fit_effect
+from .effect_fit import EffectFit, Fits, fits_of_many
 from .evidence import OWN_PACKING, GapData
 from .gap_space import GapSpace
 from .library import apart_from_mean
@@ -38,57 +36,32 @@ class GapStatistics:
 
 def gap_statistics(space: GapSpace, data: GapData, gap: Floats) -> GapStatistics:
     """`gap`: (all cells,)"""
-    fits = [fit_effect(space, candidate, gap) for candidate in data.candidates]
-    amplitude, score = (np.array(values).reshape(-1, 1) for values in ([fit.amplitude for fit in fits], [fit.score for fit in fits]))
-    values, best = _statistics(space, data, gap[None], amplitude, score)
-    return GapStatistics(**{name: float(one[0]) for name, one in values.items()}, fits=fits, best=int(best[0]))
+    fits = fits_of_singles(space, data, gap[None])
+    values, best = _statistics(space, data, gap[None], fits)
+    return GapStatistics(**{name: float(one[0]) for name, one in values.items()}, fits=[fits.of(c) for c in range(len(data.candidates))],
+                         best=int(best[0]))
 
 
 def statistics_of(space: GapSpace, data: GapData, gaps: Floats) -> Statistics:
     """GapStatistics of many gaps (gaps, all cells)."""
-    return _statistics(space, data, gaps, *fits_of_many(space, data.candidates, gaps))[0]
+    return _statistics(space, data, gaps, fits_of_singles(space, data, gaps))[0]
 
 
-def _statistics(space: GapSpace, data: GapData, gaps: Floats, amplitude: Floats, score: Floats) -> tuple[Statistics, Ints]:
-    """Also the best candidates; fits are (candidates, gaps)."""
+def fits_of_singles(space: GapSpace, data: GapData, gaps: Floats) -> Fits:
+    """Of each candidate alone to gaps (gaps, all cells)."""
+    return fits_of_many(space, [[candidate] for candidate in data.candidates], gaps)
+
+
+def _statistics(space: GapSpace, data: GapData, gaps: Floats, fits: Fits) -> tuple[Statistics, Ints]:
+    """Also the best candidates."""
     omnibus, refitted = (space.whiten(gaps) ** 2).sum(axis=1), _highest_cell(space, space.refitted(gaps))
-    best, directed, left = np.zeros(len(gaps), np.int64), np.zeros(len(gaps)), gaps
+    best, directed, left = np.zeros(len(gaps), np.int64), np.zeros(len(gaps)), gaps.copy()
     if data.candidates:
-        best, lanes = score.argmax(axis=0), np.arange(len(gaps))
-        directed = score[best, lanes]
-        left = gaps - _signatures_at(data.candidates, best, np.where(directed > 0, amplitude[best, lanes], 0))
+        best, directed = fits.scores.argmax(axis=0), fits.scores.max(axis=0)
+        for c in np.unique(best):
+            lanes = (best == c) & (directed > 0)
+            left[lanes] -= data.candidates[c].signature.at(fits.amplitudes[c, lanes, 0])
     return dict(zip(STATISTICS, (omnibus, directed, omnibus - 2 * directed, refitted, highest_patterns(space, left)))), best
-
-
-def _signatures_at(candidates: Sequence[Candidate], chosen: Ints, amplitude: Floats) -> Floats:
-    """Signature.at of the chosen candidates. (amplitudes, all cells)"""
-    signatures = [candidate.signature for candidate in candidates]
-    reach = np.array([signature.reach for signature in signatures])[chosen]
-    inside = np.clip(amplitude, -reach, reach)
-    linear, curvature = (np.array(terms)[chosen] for terms in zip(*[(s.linear, s.curvature) for s in signatures]))
-    explained: Floats = amplitude[:, None] * linear + (inside * (2 * amplitude - inside))[:, None] * curvature
-    return explained
-
-
-def fits_of_many(space: GapSpace, candidates: Sequence[Candidate], gaps: Floats) -> tuple[Floats, Floats]:
-    """Amplitude and score of fit_effect for every candidate and gap. Both (candidates, gaps)."""
-    amplitude, score = np.zeros((2, len(candidates), len(gaps)))
-    of_cells: dict[bytes, list[int]] = {}
-    for c, candidate in enumerate(candidates):
-        of_cells.setdefault(candidate.lacking.tobytes(), []).append(c)
-    for chosen in of_cells.values():
-        part = space.lacking(candidates[chosen[0]].lacking)
-        g = part.whiten(gaps)
-        l = part.whiten(np.array([candidates[k].signature.linear for k in chosen]))
-        q = part.whiten(np.array([candidates[k].signature.curvature for k in chosen]))
-        ll, lq, qq = ((a * b).sum(axis=1)[:, None] for a, b in ((l, l), (l, q), (q, q)))
-        limits = np.array([(candidates[k].signature.reach, candidates[k].low, candidates[k].high) for k in chosen]).T[:, :, None]
-        fields = np.broadcast_arrays((g * g).sum(axis=1), l @ g.T, q @ g.T, ll, lq, qq, *limits)
-        misfit = Misfit(*(values.ravel() for values in fields))
-        best = misfit.best()
-        amplitude[chosen] = best.reshape(len(chosen), -1)
-        score[chosen] = 0.5 * (misfit.gg - misfit.at(best)).reshape(len(chosen), -1)
-    return amplitude, score
 
 
 def highest_pattern(space: GapSpace, gap: Floats) -> float:
@@ -128,11 +101,11 @@ def _observable_patterns(space: GapSpace, all_cells: int) -> Floats:
 
 class NullDistribution:
     """Distribution of the statistics without a gap: each replicate is compared without its own contribution to the noise, with nuisances
-    drawn from their priors. `mean_of`: number of replicates in the mean that is compared with the observation."""
+    drawn from their priors."""
 
-    def __init__(self, data: GapData, mean_of: int, seed: int) -> None:
+    def __init__(self, data: GapData, seed: int) -> None:
         random = Random(seed, "null_draws")
-        both = math.sqrt(1 + (1 / mean_of if mean_of > 0 else 0))
+        both = math.sqrt(1 + (1 / data.mean_of if data.mean_of > 0 else 0))
         sigma = np.array([parameter.sigma for parameter in data.free])
         directions = np.array([parameter.direction for parameter in data.free])
         of_observed, of_draws, packings = [], [], []
@@ -141,12 +114,12 @@ class NullDistribution:
             gaps = both * np.repeat(_rows_left_out(data, out), DRAWS_A_REPLICATE, axis=0)
             if len(sigma):
                 gaps += random.normals(len(gaps) * len(sigma)).reshape(len(gaps), -1) * sigma @ directions
-            space = GapSpace(_noise_without(data, out), mean_of, data.cells, data.free)
+            space = data.space(noise=_noise_without(data, out))
             values = statistics_of(space, data, np.concatenate([data.gap[None], gaps]))
             of_observed.append({name: one[0] for name, one in values.items()})
             of_draws.append({name: one[1:] for name, one in values.items()})
             packings.append(np.repeat(data.group[out], DRAWS_A_REPLICATE))
-        whole = statistics_of(GapSpace(data.noise, mean_of, data.cells, data.free), data, data.gap[None])
+        whole = statistics_of(data.space(), data, data.gap[None])
         packing = np.concatenate(packings) if OWN_PACKING in data.group else np.zeros(sum(map(len, packings)), np.int64)
         self._draws: dict[int, Statistics] = {int(p): {} for p in np.unique(packing)}
         for name in STATISTICS:

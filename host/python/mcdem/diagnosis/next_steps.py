@@ -63,11 +63,10 @@ def _finer_noise(evidence: Evidence, noise: Floats) -> Floats:
 
 
 def _measurements_of(evidence: Evidence, data: GapData) -> list[Measurement]:
-    mean_of = len(evidence.baseline)
     measurements = []
 
     def add(what: str, noise: Floats = data.noise, cells: CellChoice = data.cells, free: Sequence[FreeParameter] = data.free) -> None:
-        measurements.append(Measurement(what, GapSpace(noise, mean_of, cells, list(free))))
+        measurements.append(Measurement(what, data.space(cells, free, noise=noise)))
 
     for k, nuisance in enumerate(evidence.nuisances):
         better = replace(data.free[k], sigma=data.free[k].sigma / TIMES_BETTER)
@@ -129,7 +128,7 @@ def _more_information(then: GapSpace, now: GapSpace, candidate: Candidate, ampli
 def _sharpening(measurements: Sequence[Measurement], evidence: Evidence, data: GapData, findings: Findings,
                 decision: Decision) -> list[NextStep]:
     """Without rivals: resulting errors of the amplitude, or without a gap resulting detection limits."""
-    now = GapSpace(data.noise, len(evidence.baseline), data.cells, data.free)
+    now = data.space()
     named = decision.verdict == Verdict.effect
     what_falls = "the amplitude's error falls" if named else "the median detection limit falls"
     amplitudes = {c: _amplitude_of(findings, decision, c) if named else 0.0
@@ -195,7 +194,7 @@ def power_of_protocol(runs: ProtocolRuns, evidence: Evidence, data: GapData, fin
     # The rival's amplitude is fitted to the new data as well.
     free = [*data.free, FreeParameter(slope, abs(rival.amplitudes[0]))]
     free = [replace(one, direction=np.where(np.isfinite(one.direction), one.direction, 0)) for one in free]
-    space = GapSpace(_with_noise_of_new_cells(data.noise, runs.leader, cells), len(evidence.baseline), cells, free)
+    space = data.space(cells, free, noise=_with_noise_of_new_cells(data.noise, runs.leader, cells))
     # The product of the means of both halves of the runs has no bias by their noise.
     first, second = (space.whiten(half.mean(axis=0)) for half in np.split(runs.leader - runs.rival, [len(runs.leader) // 2]))
     return _power_to_tell(float(first @ second), limits.group_margin(chosen_proposal(findings, decision).best_gain()))

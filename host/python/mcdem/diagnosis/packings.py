@@ -24,12 +24,11 @@ def packing_agreements(evidence: Evidence, data: GapData, null: NullDistribution
     count = evidence.packing_count()
     if count < 2:
         return []
-    mean_of = len(evidence.baseline)
     noise = sqrt(count) * data.noise  # for one packing
     apart = sqrt(1 - 1 / count)  # for the difference between one packing and the mean of all
-    alone = GapSpace(noise, mean_of, data.cells, data.free)
+    alone = data.space(noise=noise)
     extra = apart**2 * signature_variance(data, decided) if decided else None  # effects vary slightly between packings
-    differences = GapSpace(apart * noise, mean_of, data.cells, _own_parameters(evidence, data, apart), extra)
+    differences = data.space(free=_own_parameters(evidence, data, apart), noise=apart * noise, extra=extra)
 
     def p_of(space: GapSpace, gap: Floats) -> float:
         white = space.whiten(gap)

@@ -7,10 +7,10 @@ import numpy as np
 
 from ..results.recording import Floats
 from .decision import Proposal
-from .effect_fit import Candidate, draw_error, fit_effect, fit_effects
+from .effect_fit import Candidate, EffectFit, draw_error, fit_effect, fits_of_many
 from .effects import is_numerical
 from .evidence import GapData
-from .gap_space import CellChoice, FreeParameter, GapSpace, pick, without
+from .gap_space import CellChoice, FreeParameter, GapSpace, without
 from .gap_tests import GapStatistics, NullDistribution
 from .rearrangements import PlaceLeftOut
 
@@ -28,40 +28,27 @@ MIN_RUNS = 2
 STILL_FREE = 0.25  # fraction of an amplitude
 
 
-def explained_by(proposal: Proposal, data: GapData) -> Floats:
-    """The sum of a proposal's signatures at its amplitudes. (all cells,)"""
-    explained = np.zeros_like(data.mean)
-    for c, amplitude in zip(proposal.candidates, proposal.amplitudes):
-        explained += data.candidates[c].signature.at(amplitude)
-    return explained
-
-
-def signature_variance(data: GapData, proposal: Proposal) -> Floats:
-    """Variance of the error of a proposal's signatures for one packing: packings differ in an effect, and a tenth of a signature is uncertain.
-    (all cells,)"""
-    return _effect_scatter(data, proposal) + _signature_error_variance(data, proposal)
+def signature_variance(data: GapData, proposal: Proposal, packings: int = 1) -> Floats:
+    """(all cells,) variance of the error of a proposal's signatures for the mean of packings: packings differ in an effect, and a tenth of a
+    signature is uncertain."""
+    variance = _effect_scatter(data, proposal) / packings
+    for one, amplitude in zip(data.chosen(proposal.candidates), proposal.amplitudes):
+        variance += (SIGNATURE_ERROR * one.signature.at(amplitude)) ** 2
+    return variance
 
 
 def _effect_scatter(data: GapData, proposal: Proposal) -> Floats:
     """Additional scatter between packings caused by the effect, because packings differ in it and it has random draws. For one packing."""
     chaos = 2 * data.packings * (data.noise**2).sum(axis=0) / len(data.noise)
     extra = np.zeros_like(data.mean)
-    for c, amplitude in zip(proposal.candidates, proposal.amplitudes):
-        signature = data.candidates[c].signature
-        part = min(1.0, abs(amplitude) / signature.reach)
-        extra += np.maximum(amplitude**2 * signature.spread() - part**2 * chaos, 0)
+    for one, amplitude in zip(data.chosen(proposal.candidates), proposal.amplitudes):
+        part = min(1.0, abs(amplitude) / one.signature.reach)
+        extra += np.maximum(amplitude**2 * one.signature.spread() - part**2 * chaos, 0)
     return extra
 
 
-def _signature_error_variance(data: GapData, proposal: Proposal) -> Floats:
-    variance = np.zeros_like(data.mean)
-    for c, amplitude in zip(proposal.candidates, proposal.amplitudes):
-        variance += (SIGNATURE_ERROR * data.candidates[c].signature.at(amplitude)) ** 2
-    return variance
-
-
-def propose(space: GapSpace, data: GapData, null: NullDistribution, statistics: GapStatistics, mean_of: int) -> list[Proposal]:
-    """`statistics` of the observed gap; `mean_of`: number of replicates in the baseline's mean."""
+def propose(space: GapSpace, data: GapData, null: NullDistribution, statistics: GapStatistics) -> list[Proposal]:
+    """`statistics` of the observed gap."""
     order = sorted(range(len(statistics.fits)), key=lambda c: -statistics.fits[c].score)
     proposals = _singles(space, data, statistics, order)
     if not proposals:
@@ -70,9 +57,8 @@ def propose(space: GapSpace, data: GapData, null: NullDistribution, statistics: 
     if pair and pair.gain > statistics.directed + PAIR_GAIN:
         proposals.append(pair)
     for proposal in proposals:
-        extra = _effect_scatter(data, proposal) / data.packings + _signature_error_variance(data, proposal)
-        with_error = GapSpace(data.noise, mean_of, data.cells, data.free, extra)
-        proposal.misfit_p = null.misfit_p(with_error, data.gap - explained_by(proposal, data))
+        with_error = data.space(extra=signature_variance(data, proposal, data.packings))
+        proposal.misfit_p = null.misfit_p(with_error, data.gap - data.explained(proposal.candidates, proposal.amplitudes))
         proposal.errors = [
             math.hypot(error, draw_error(space, data.candidates[c], amplitude), AMPLITUDE_ERROR * amplitude)
             for c, amplitude, error in zip(proposal.candidates, proposal.amplitudes, proposal.errors)]
@@ -95,8 +81,12 @@ def _singles(space: GapSpace, data: GapData, statistics: GapStatistics, order: S
         wanted = of_it - tried if near else (of_it - tried) & {"nuisance"}
         if (near and len(proposals) < MAX_SINGLES) or wanted:
             tried |= of_it
-            proposals.append(Proposal([c], [fit.amplitude], [fit.error], fit.score))
+            proposals.append(_proposal([c], fit))
     return proposals
+
+
+def _proposal(candidates: Sequence[int], fit: EffectFit) -> Proposal:
+    return Proposal(list(candidates), list(fit.amplitudes), list(fit.errors), fit.score)
 
 
 def _behind(c: int, space: GapSpace, data: GapData, statistics: GapStatistics) -> float:
@@ -110,17 +100,17 @@ def _behind(c: int, space: GapSpace, data: GapData, statistics: GapStatistics) -
 def _best_pair(space: GapSpace, data: GapData, order: Sequence[int]) -> Proposal | None:
     """The two candidates that fit the gap best together. Neither needs to lead alone, because the contributions of both to a cell may
     cancel."""
-    best: Proposal | None = None
-    for pair in combinations(order, 2):
-        fit = fit_effects(space, [data.candidates[c] for c in pair], data.gap)
-        if fit.score > (best.gain if best else 0):
-            best = Proposal(list(pair), list(fit.amplitudes), list(fit.errors), fit.score)
-    return best
+    pairs = list(combinations(order, 2))
+    fits = fits_of_many(space, [data.chosen(pair) for pair in pairs], data.gap[None])
+    if not fits.scores.max(initial=0) > 0:
+        return None
+    best = int(fits.scores.argmax())
+    return _proposal(pairs[best], fits.of(best))
 
 
 def whole_runs(runs: Floats, cells: CellChoice) -> Floats:
     """The runs that finished: packings may run away at amplitudes at which others do not. (finished runs, all cells)"""
-    whole: Floats = runs[np.isfinite(pick(runs, cells)).all(axis=1)]
+    whole: Floats = runs[np.isfinite(runs[:, cells]).all(axis=1)]
     return whole
 
 
@@ -133,16 +123,15 @@ def confirm(proposal: Proposal, data: GapData, null: NullDistribution, places: S
     runs finished. In cells that a candidate lacks and the runs as well, nothing is gained and the gap stays."""
     lacking = data.lacking(proposal.candidates)
     runs = whole_runs(runs, without(data.cells, lacking))
-    mean_of = len(runs)
-    if mean_of < MIN_RUNS:
+    if len(runs) < MIN_RUNS:
         return None
     left, lost = _left_by(runs, data, lacking, observed, nuisances)
     free = data.free + [
         _still_free(data.candidates[c], amplitude, error)
         for c, amplitude, error in zip(proposal.candidates, proposal.amplitudes, proposal.errors)]
     scatter = _effect_scatter(data, proposal) / data.packings
-    space = GapSpace(data.noise, mean_of, data.cells, free, scatter)
-    plain = GapSpace(data.noise, mean_of, data.cells, data.free)
+    space = data.space(free=free, mean_of=len(runs), extra=scatter)
+    plain = data.space(mean_of=len(runs))
     cost = sum(0.5 * (shift / parameter.sigma) ** 2 for shift, parameter in zip(nuisances, data.free))  # of the nuisances, from their priors
     proposal.confirmed_gain = float(
         space.lacking(lost).log_likelihood(left) - cost - plain.lacking(lost).log_likelihood(data.gap))
@@ -151,7 +140,7 @@ def confirm(proposal: Proposal, data: GapData, null: NullDistribution, places: S
     if proposal.confirmed_misfit_p < enough:
         proposal.rest_misfit_p = 0
         for one in places:
-            p = one.null.misfit_p(GapSpace(data.noise, mean_of, one.cells, free, scatter), left)
+            p = one.null.misfit_p(data.space(one.data.cells, free, mean_of=len(runs), extra=scatter), left)
             if p >= enough and p > proposal.rest_misfit_p:
                 proposal.left_out, proposal.rest_misfit_p = one.place, p
     return space.lacking(lacking).fit_nuisances(left)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .evidence import GapData
-from .gap_space import CellChoice, GapSpace
+from .gap_space import CellChoice
 from .gap_tests import GapStatistics, NullDistribution, gap_statistics
 from ..observe.grid import cells_each
 from ..observe.observables import observables
@@ -29,15 +29,15 @@ class PlaceLeftOut:
     """Tests without one place."""
 
     place: int
-    cells: CellChoice
+    data: GapData  # with the other cells
     null: NullDistribution
 
 
-def places_left_out(data: GapData, mean_of: int, seed: int) -> list[PlaceLeftOut]:
+def places_left_out(data: GapData, seed: int) -> list[PlaceLeftOut]:
     """One for each place, unless too few other cells remain."""
     choices = [without_place(data.cells, place, len(data.gap)) for place in range(cells_each(len(data.gap)))]
-    return [PlaceLeftOut(place, cells, NullDistribution(replace(data, cells=cells), mean_of, seed))
-            for place, cells in enumerate(choices) if MIN_CELLS <= len(cells) < len(data.cells)]
+    others = {place: replace(data, cells=cells) for place, cells in enumerate(choices) if MIN_CELLS <= len(cells) < len(data.cells)}
+    return [PlaceLeftOut(place, other, NullDistribution(other, seed)) for place, other in others.items()]
 
 
 def p_of_gap(null: NullDistribution, statistics: GapStatistics) -> float:
@@ -45,7 +45,6 @@ def p_of_gap(null: NullDistribution, statistics: GapStatistics) -> float:
     return min(1.0, 2 * min(null.p_value("omnibus", statistics.omnibus), null.p_value("directed", statistics.directed)))
 
 
-def p_without_one_place(places: Sequence[PlaceLeftOut], data: GapData, mean_of: int) -> float:
+def p_without_one_place(places: Sequence[PlaceLeftOut]) -> float:
     """The largest p of the gap without one of the places."""
-    spaces = [GapSpace(data.noise, mean_of, one.cells, data.free) for one in places]
-    return max((p_of_gap(one.null, gap_statistics(space, data, data.gap)) for one, space in zip(places, spaces)), default=0.0)
+    return max((p_of_gap(one.null, gap_statistics(one.data.space(), one.data, one.data.gap)) for one in places), default=0.0)

@@ -16,18 +16,17 @@ class Signature:
     curvature: Floats = field(default_factory=lambda: np.zeros(0))  # (cells,) per unit amplitude squared
     slopes: Floats = field(default_factory=lambda: np.zeros((0, 0)))  # (pairs, cells) difference at the second amplitude over it
 
-    def within_reach(self, amplitude: float) -> float:
-        return min(max(amplitude, -self.reach), self.reach)
-
-    def at(self, amplitude: float) -> Floats:
-        """(cells,) mu at an amplitude."""
-        inside = self.within_reach(amplitude)
-        mu: Floats = inside * self.linear + inside * inside * self.curvature + (amplitude - inside) * self.slope(inside)
+    def at(self, amplitude: Floats | float) -> Floats:
+        """(.., cells) mu at amplitudes (..)."""
+        a = np.asarray(amplitude, float)[..., None]
+        inside = np.clip(a, -self.reach, self.reach)
+        mu: Floats = a * self.linear + inside * (2 * a - inside) * self.curvature
         return mu
 
     def slope(self, amplitude: float) -> Floats:
         """(cells,) d mu / d a."""
-        return self.linear + 2 * self.within_reach(amplitude) * self.curvature
+        slope: Floats = self.linear + 2 * np.clip(amplitude, -self.reach, self.reach) * self.curvature
+        return slope
 
     def pairs(self) -> int:
         return len(self.slopes)
