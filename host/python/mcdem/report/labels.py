@@ -98,4 +98,4 @@ def _ramp_colour(place: float) -> str:
     at = place * (len(RAMP) - 1)
     low = min(int(at), len(RAMP) - 2)
     mixed = (math.floor(a + (at - low) * (b - a) + 0.5) for a, b in zip(RAMP[low], RAMP[low + 1], strict=True))
-    return "#" + "".join(f"{part:02x}" for part in mixed)
+    return "#" + bytes(mixed).hex()
