@@ -1,6 +1,7 @@
 """Figures of runs have the values of run.h5. run_figures_test.py PROGRAM"""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -95,6 +96,16 @@ class Curves(unittest.TestCase):
         for name, recordings in settings.items():
             for phase, linestyle in ((0, "-"), (1, "--")):
                 self.expect_line(axes, name, linestyle, truth.curve(recordings, lambda r: truth.contacts_per_grain(r, 0), phase))
+
+    def test_coordination_above_the_best_threshold(self):
+        axes = figures.coordination(folder / "against")
+        for name, recordings in settings.items():
+            words, = (words for words in drawn.words_of(axes) if words.startswith(name))
+            tau = truth.threshold_near(recordings, [experiment], float(re.fullmatch(r".*, tau (\S+) mN", words)[1]) * 1e-3)
+            self.assertGreater(tau, 0)
+            for phase, linestyle in ((0, "-"), (1, "--")):
+                self.expect_line(axes, name, linestyle, truth.curve(
+                    recordings, lambda r, tau=tau: truth.contacts_per_grain(r, tau), phase))
 
     def test_scaling(self):
         axes = figures.scaling(folder / "run")

@@ -3,6 +3,7 @@ import dataclasses
 import json
 import math
 import pathlib
+import re
 import sys
 import unittest
 
@@ -11,11 +12,11 @@ import numpy as np
 sys.path[:0] = [str(pathlib.Path(__file__).parents[1] / "observe")]
 from synthetic import Law, cell, changed, contacts_of, recording, rows, run, with_parameters  # noqa: E402
 
-from mcdem.observe.levels import level_means  # noqa: E402
 from mcdem.observe.replicas import Setting, group_by_setting  # noqa: E402
+from mcdem.report.charts import run_chart  # noqa: E402
 from mcdem.report.figure_data import FigureOptions  # noqa: E402
-from mcdem.report.figure_values import DEFINITIONS, Drawing, FigureSeries, Kind, RunFigure, figure_file, run_figure  # noqa: E402
-from mcdem.report.run_figures import curves_of, run_figures  # noqa: E402
+from mcdem.report.figure_values import DEFINITIONS, figure_file  # noqa: E402
+from mcdem.report.run_figures import run_figures  # noqa: E402
 from mcdem.results import Phase  # noqa: E402
 
 
@@ -129,17 +130,10 @@ class RunValuesTest(unittest.TestCase):
         self.assertEqual(values["top_force"]["series"][0]["words"], "\ufffd\" \\ `x` ")
 
     def test_a_figure_is_one_function(self):
-        """As CONTRIBUTING.md shows: its values, chart and picture follow from it."""
-        from mcdem.report.charts import run_chart
-
-        @run_figure(Drawing(Kind.phases, from_zero="x"))
-        def packing_fractions(data):
-            """Packing fraction against displacement."""
-            def make(series):
-                return FigureSeries(series, curves_of(level_means(series.levels, lambda one: one.scans.packing_fraction)))
-
-            return RunFigure("Packing fraction", "plate displacement [mm]", "packing fraction", [make(one) for one in data.strokes])
-
+        """That of CONTRIBUTING.md: its values and its chart follow from it."""
+        from mcdem.report import run_figures as room
+        guide = (pathlib.Path(__file__).parents[2] / "CONTRIBUTING.md").read_text("utf-8")
+        exec(re.search(r"(?s)```py\n(@run_figure.*?)```", guide)[1], dict(vars(room)))
         self.addCleanup(DEFINITIONS.pop, "packing_fractions")
         figure = run_figures(group_by_setting(two_models())).figures[-1]
         chart = run_chart(figure)

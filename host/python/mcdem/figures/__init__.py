@@ -11,10 +11,11 @@ print. Functions return the axes, or an array of axes if a figure has several.
 from collections.abc import Callable
 from typing import Any
 
+from ..report.figure_values import DEFINITIONS
 from .challenge import confidence, confusion, power
 from .convergence import convergence
 from .diagnosis import how_far, where, which
-from .runs import DEFINITIONS, figure_function
+from .runs import figure_function
 from .style import COLUMN, PAGE, STYLE, new_axes, save
 from .values import read
 

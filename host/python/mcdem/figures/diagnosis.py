@@ -87,11 +87,9 @@ def which(source: Source, axes: Any = None) -> Any:
         column(over_limit, AMPLITUDE, place, row["amplitude"], "left")
         column(over_limit, PROBABILITY, place, row["probability"], "right")
     over_limit.axvline(1, color=INK, linestyle=(0, (4, 2)), linewidth=0.7)
-    for place in axes:
-        place.axvline(0, color=INK, linewidth=0.5)
-        place.grid(False, axis="y")
-        place.tick_params(axis="y", length=0)
-        place.spines["left"].set_visible(False)
+    for panel in axes:
+        panel.axvline(0, color=INK, linewidth=0.5)
+        set_rows(panel)
     gain.set_xlabel(values["gain_label"])
     over_limit.set_xlabel(values["over_limit_label"])
     gain.set_yticks(range(len(rows)), [plain(row["words"]) for row in rows])
@@ -99,10 +97,17 @@ def which(source: Source, axes: Any = None) -> Any:
     gain.set_ylim(len(rows) - 0.4, -0.6)
     gain.margins(x=0.1)
     heading = "group" if any(row["group"] for row in rows) else ""
-    for place, x, words, side in ((gain, GROUP, heading, "right"), (over_limit, AMPLITUDE, "amplitude", "left"),
+    for panel, x, words, side in ((gain, GROUP, heading, "right"), (over_limit, AMPLITUDE, "amplitude", "left"),
                                   (over_limit, PROBABILITY, "probability", "right")):
-        column(place, x, -1.1, words, side)
+        column(panel, x, -1.1, words, side)
     return axes
+
+
+def set_rows(axes: Any) -> None:
+    """Rows of a table have neither lines nor ticks."""
+    axes.grid(False, axis="y")
+    axes.tick_params(axis="y", length=0)
+    axes.spines["left"].set_visible(False)
 
 
 def draw_gain(axes: Any, place: int, row: Values, colour: str, largest: float) -> None:
@@ -179,7 +184,5 @@ def draw_bars(axes: Any, values: Values) -> None:
     axes.set_yticks(range(len(values["bars"])), [plain(bar["words"]) for bar in values["bars"]])
     axes.set_ylim(len(values["bars"]) - 0.5, -0.5)
     axes.margins(x=0.17)
-    axes.grid(False, axis="y")
-    axes.tick_params(axis="y", length=0)
-    axes.spines["left"].set_visible(False)
+    set_rows(axes)
     axes.set_xlabel(values["gap_label"])

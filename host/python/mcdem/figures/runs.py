@@ -10,11 +10,11 @@ from ..report.run_figures import run_figures  # noqa: F401  defines them
 from .style import GREY, Entry, key, keyed_axes, line, styled
 from .values import Source, read
 
-SIMULATED = {"load": {"linestyle": "-"}, "unload": {"linestyle": (0, (4, 2))}}
-REFERENCE = {"load": {}, "unload": {"markerfacecolor": "white"}}
-PHASES = {"load": "loading", "unload": "unloading"}
-
 Values = dict[str, Any]
+
+SIMULATED: dict[str, Values] = {"load": {"linestyle": "-"}, "unload": {"linestyle": (0, (4, 2))}}
+REFERENCE: dict[str, Values] = {"load": {}, "unload": {"markerfacecolor": "white"}}
+PHASES = {"load": "loading", "unload": "unloading"}
 
 
 def figure_function(name: str) -> Callable[..., Any]:

@@ -88,7 +88,7 @@ def save(axes: Any, file: Source) -> None:
     file = pathlib.Path(file)
     kind = file.suffix[1:]
     creator = {"png": "Software"}.get(kind, "Creator")  # `mcdem` recognises its own figures by this
-    dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}  # so that the same figure has the same bytes
+    dates: dict[str, dict[str, None]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}  # so that the same figure has the same bytes
     page = io.BytesIO()
-    np.ravel(axes)[0].figure.savefig(page, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
+    np.ravel(axes)[0].figure.savefig(page, format=kind, metadata={creator: "mcdem figure"} | dates.get(kind, {}))
     write_whole(file, page.getvalue())

@@ -122,7 +122,7 @@ def _nearest_level(series: Series, displacement: float, phase: Phase) -> Level |
     """The level with contacts nearest to the displacement in this phase, if there is one."""
     known = [level for level in series.levels if level.phase == phase
              and any(len(one.scans.contacts[row]) for one, rows in zip(level.replicas, level.scans, strict=True) for row in rows)]
-    return min(known, key=lambda level: abs(level.displacement - displacement), default=None)
+    return min(known, key=lambda level: float(abs(level.displacement - displacement))) if known else None
 
 
 def _shown_levels(strokes: Sequence[Series], displacement: float) -> list[tuple[Series, Level]]:
