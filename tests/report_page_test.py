@@ -94,18 +94,16 @@ def check_texts(reader):
     assert reader.element("#trouble").get_attribute("hidden") is not None
 
 
-def check_tables(reader, program, run, diagnosis):
+def check_tables(reader, program, run):
     parts = reader.parts()
     page_tables.check_run_origin(parts, run, reader.folder)
     page_tables.check_metrics(parts, program, reader.folder)
-    page_tables.check_diagnosis_tables(parts, diagnosis, run)
 
 
 def check_report(reader, program, run):
     """Checks the page of the run alone and its diagnosis."""
-    diagnosis = json.loads((reader.folder / "diagnosis/diagnosis.json").read_text())
     check_texts(reader)
-    check_tables(reader, program, run, diagnosis)
+    check_tables(reader, program, run)
     page_charts.check_run_charts(reader, values_of(reader.folder / "figures"))
     check_diagnosis_charts(reader, values_of(reader.folder / "diagnosis"), reader.folder / "reality")
     page_charts.check_log_buttons(reader)

@@ -10,7 +10,7 @@ import unittest
 import unittest.mock
 
 from diagnosis_samples import VERDICTS, bare, of, sample, with_texts
-from page_markup import Tags, content_of, markup_of
+from page_markup import Tags, content_of, markup_of, tables_of
 
 from mcdem.errors import InputError, RunError
 from mcdem.report.diagnosis import read_diagnosis
@@ -49,6 +49,18 @@ class PageOfDiagnosis(unittest.TestCase):
         for words in ("<li>forces on the side walls: would tell", "<li>diameters of single grains", "unloading, and loading",
                       ": out/diagnosis</p>"):
             self.assertIn(words, page)
+
+    def test_gains_and_metrics_are_in_their_columns(self):
+        d = sample("effect")
+        tables = tables_of(page_of(d))
+        head, row = tables["Effects consistent with the gap"]
+        self.assertEqual(row[head.index("gain in log likelihood"):][:2], [f"{d['causes'][0]['score']:.1f}", "44.1"])
+        self.assertEqual(head[head.index("gain in log likelihood") + 1], "gain in full simulations")
+        shrink = d["shrink"]
+        names = {"Rtop": "1", "errf [N]": "0", "errZ": "0", "bhat": "0"}  # perfect
+        self.assertEqual(tables["Before and after"], [
+            ["", "before", "after", "perfect"], ["gap, noise subtracted", *(f"{shrink[key]:.3g}" for key in ("before", "after")), "0"],
+            *([name, *(f"{value:.3g}" for value in shrink["metrics"][name.split()[0]]), best] for name, best in names.items())])
 
     def test_hostile_texts_are_shown_and_not_executed(self):
         hostile = "<script>alert(1)</script>\"'&`touch pwned1`'; system('touch pwned2') %s%n \\ \x01"

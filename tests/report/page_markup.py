@@ -1,4 +1,5 @@
 """What a page is made of, read without a browser."""
+import html
 import html.parser
 import json
 import re
@@ -12,6 +13,13 @@ def content_of(page):
 def markup_of(page):
     """The page without scripts, style sheet and plotting library."""
     return re.sub(r"(?s)(<(script|style)[^>]*>).*?</\2>", r"\1</\2>", page)
+
+
+def tables_of(page):
+    """Rows of texts of every table, its head first, by the heading above it."""
+    found = re.findall(r"(?s)<h3>([^<]*)</h3>\s*<div class=\"wide\"><table>(.*?)</table>", page)
+    return {heading: [[html.unescape(cell) for cell in re.findall(r'<t[hd](?: class="left")?>([^<]*)</t[hd]>', row)] for row in table.split("</tr>")[:-1]]
+            for heading, table in found}
 
 
 class Tags(html.parser.HTMLParser):

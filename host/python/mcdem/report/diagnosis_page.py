@@ -6,10 +6,10 @@ from math import isfinite
 from ..diagnosis.diagnosis_types import Diagnosis, WhereEntry
 from .diagnosis_charts import diagnosis_charts
 from .diagnosis_text import how_far_line, strongest_first, verdict_lines
-from .diagnosis_words import (amount, amount_with_error, displacement_words, listed, listed_names, missing_name, next_words, number,
-                              p_number, p_words, percent, phase_words, words_of)
+from .diagnosis_words import (amount, amount_with_error, displacement_words, listed, listed_names, missing_name, next_words, p_number,
+                              p_words, percent, phase_words, words_of)
 from .effect_names import EFFECTS, OBSERVABLES
-from .labels import NO_NUMBER
+from .labels import NO_NUMBER, number
 from .page import Page
 from .text_table import TextTable, table_of
 from .verdict import verdict_words

@@ -13,8 +13,8 @@ from ..observe.scaling import fit_scaling, scaling_points
 from ..results.names import Phase
 from ..results.recording import Recording
 from .csv_text import csv_of, varying_keys
-from .estimate_text import beyond_note, number, rate_note, with_error
-from .labels import words_for
+from .estimate_text import beyond_note, rate_note, with_error
+from .labels import number, words_for
 from .text_table import TextTable, table_of
 
 ENERGIES = {"work of walls": "wall_work", "of weight": "weight_work", "elastic": "elastic_energy", "kinetic": "kinetic_energy",
@@ -23,7 +23,7 @@ ENERGIES = {"work of walls": "wall_work", "of weight": "weight_work", "elastic":
 
 def table_of_models(models: ModelTable) -> TextTable:
     """Top force at full stroke (or at the last scan, marked) and its ratio to the reference setting."""
-    force = f"top force at {number(models.displacement * 1e3, 2)} mm [N]" if math.isfinite(models.displacement) else "top force [N]"
+    force = f"top force at {models.displacement * 1e3:.2f} mm [N]" if math.isfinite(models.displacement) else "top force [N]"
     some_failed = any(row.failed for row in models.rows)
     rows, notes, marked = [], [], False
     for row in models.rows:
@@ -32,7 +32,7 @@ def table_of_models(models: ModelTable) -> TextTable:
                      *([str(row.failed)] if some_failed else [])])
         marked = marked or bool(mark)
         if row.beyond:
-            notes.append(beyond_note(words, number(row.beyond.displacement * 1e3, 2) + " mm", row.beyond))
+            notes.append(beyond_note(words, f"{row.beyond.displacement * 1e3:.2f} mm", row.beyond))
     if marked:
         notes.insert(0, "*: no replica reached full stroke; force and ratio are of the last scan")
     if math.isfinite(models.rate_error):
@@ -77,8 +77,8 @@ def table_of_scaling(settings: Sequence[Setting]) -> TextTable:
         points = scaling_points(group_levels(setting.replicas))
         for phase in Phase:
             fit = fit_scaling(points, phase)
-            rows.append([words_for(setting.label), phase.name, number(fit.coefficient, 1), number(fit.r_squared, 4),
-                         number(fit.curvature, 3), str(fit.points)])
+            rows.append([words_for(setting.label), phase.name, number(fit.coefficient, ".1f"), number(fit.r_squared, ".4f"),
+                         number(fit.curvature, ".3f"), str(fit.points)])
     return table_of(["<model", "<phase", "F / (Z phi b f) [1/m]", "R^2", "curvature", "levels"], rows, [
         "F: top force, Z: coordination number, phi: packing fraction, b: branch length, f: mean contact force",
         "curvature: part of F that is quadratic, at the largest Z phi b f; levels: number of displacements fitted"])
