@@ -22,25 +22,6 @@ except ImportError as missing:
 
 EXPERIMENTS = {"reality": "mc_dem #1", "repeated": "mc_dem #2"}
 NAME = "small <img src=x onerror=alert(1)>"
-SCENE = f"""
-name = "{NAME}"
-[box]
-size_x = 0.06
-size_y = 0.06
-[packing]
-count = 30
-packing_fraction = 0.5
-[plate]
-start = 0.09
-end = 0.07
-[protocol]
-scans_per_stroke = 6
-scan_at_start = true
-[batch]
-replicas = 2
-[batch.vary]
-"contact.model" = ["independent", "mc_dem"]
-"""
 REFERENCE = ", ".join(f"{NAME}, {replica}" for replica in EXPERIMENTS.values())
 
 
@@ -50,7 +31,7 @@ def make_reports(program, folder):
     def mcdem(*words):
         subprocess.run([program, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL, timeout=500)
 
-    (folder / "scene.toml").write_text(SCENE)
+    (folder / "scene.toml").write_text(f'name = "{NAME}"' + page_truth.PLATE_SCENE)
     (folder / "cell.toml").write_text(page_truth.CELL_SCENE)
     mcdem("run", "cell.toml", "--out", "cell", "--no-figures")
     mcdem("report", "cell", "--out", "cell.html")

@@ -15,25 +15,6 @@ from drawn import figures
 
 from report import page_truth as truth
 
-SCENE = """
-name = "small"
-[box]
-size_x = 0.06
-size_y = 0.06
-[packing]
-count = 30
-packing_fraction = 0.5
-[plate]
-start = 0.09
-end = 0.07
-[protocol]
-scans_per_stroke = 6
-scan_at_start = true
-[batch]
-replicas = 2
-[batch.vary]
-"contact.model" = ["independent", "mc_dem"]
-"""
 COLOURS = {"Independent contacts": "#0072B2", "MC-DEM": "#D55E00"}
 NAMES = ("top_force", "force_distribution", "coordination", "scaling")
 PROGRAM = ""
@@ -44,7 +25,7 @@ def setUpModule():
     folder = pathlib.Path(tempfile.mkdtemp())
     unittest.addModuleCleanup(shutil.rmtree, folder)
     mcdem = drawn.Program(PROGRAM, folder)
-    (folder / "scene.toml").write_text(SCENE)
+    (folder / "scene.toml").write_text('name = "small"' + truth.PLATE_SCENE)
     mcdem("run", "scene.toml", "--out", "run")
     mcdem("experiment", "from-run", "run", "--replica", "mc_dem #1", "--seed", "0", "--out", "reality")
     mcdem("figures", "run", "--against", "reality", "--displacement", "0.011", "--out", "against")

@@ -77,6 +77,7 @@ class ChartsTest(unittest.TestCase):
         self.assertEqual({name: chart.log_axes for name, chart in made.items()},
                          {"top_force": "xy", "force_distribution": "", "coordination": "", "scaling": "xy"})
         self.assertEqual(made["force_distribution"].title, "Contact forces at 18.0 mm, unloading")
+        self.assertEqual([trace.showlegend for trace in made["top_force"].figure.data], [True, False] * 2, "one entry a series")
         self.assertEqual(made["force_distribution"].figure.layout.yaxis.type, "log", "always, without a button")
 
     def test_captions_describe_the_data(self):
