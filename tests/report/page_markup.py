@@ -18,8 +18,8 @@ def markup_of(page):
 def tables_of(page):
     """Rows of texts of every table, its head first, by the heading above it."""
     found = re.findall(r"(?s)<h3>([^<]*)</h3>\s*<div class=\"wide\"><table>(.*?)</table>", page)
-    return {heading: [[html.unescape(cell) for cell in re.findall(r'<t[hd](?: class="left")?>([^<]*)</t[hd]>', row)] for row in table.split("</tr>")[:-1]]
-            for heading, table in found}
+    cell = re.compile('<t[hd](?: class="left")?>([^<]*)</t[hd]>')
+    return {heading: [list(map(html.unescape, cell.findall(row))) for row in table.split("</tr>")[:-1]] for heading, table in found}
 
 
 class Tags(html.parser.HTMLParser):
