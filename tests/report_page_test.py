@@ -5,7 +5,6 @@ Exit code 77: a required program or module is missing.
 """
 import json
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -23,25 +22,6 @@ except ImportError as missing:
 
 EXPERIMENTS = {"reality": "mc_dem #1", "repeated": "mc_dem #2"}
 NAME = "small <img src=x onerror=alert(1)>"
-SCENE = f"""
-name = "{NAME}"
-[box]
-size_x = 0.06
-size_y = 0.06
-[packing]
-count = 30
-packing_fraction = 0.5
-[plate]
-start = 0.09
-end = 0.07
-[protocol]
-scans_per_stroke = 6
-scan_at_start = true
-[batch]
-replicas = 2
-[batch.vary]
-"contact.model" = ["independent", "mc_dem"]
-"""
 REFERENCE = ", ".join(f"{NAME}, {replica}" for replica in EXPERIMENTS.values())
 
 
@@ -51,7 +31,7 @@ def make_reports(program, folder):
     def mcdem(*words):
         subprocess.run([program, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL, timeout=500)
 
-    (folder / "scene.toml").write_text(SCENE)
+    (folder / "scene.toml").write_text(f'name = "{NAME}"' + page_truth.PLATE_SCENE)
     (folder / "cell.toml").write_text(page_truth.CELL_SCENE)
     mcdem("run", "cell.toml", "--out", "cell", "--no-figures")
     mcdem("report", "cell", "--out", "cell.html")
@@ -61,8 +41,10 @@ def make_reports(program, folder):
     mcdem("diagnose", "scene.toml", "--experiment", "reality", "--out", "diagnosis", "--replicates", "8",
           "--pairs", "2", "--confirmations", "2", "--candidates", "cross_contact,adhesion,friction,stiffening")
     mcdem("report", "run", "diagnosis", "--out", "report.html")
-    mcdem("report", "run", "--against", "reality", "--against", "repeated", "--displacement", "0.011",
-          "--out", "against.html")
+    against = ("--against", "reality", "--against", "repeated", "--displacement", "0.011")
+    mcdem("report", "run", *against, "--out", "against.html")
+    mcdem("figures", "run", "--out", "figures")
+    mcdem("figures", "run", *against, "--out", "figures_against")
 
 
 def background(reader):
@@ -93,20 +75,18 @@ def check_texts(reader):
     assert reader.element("#trouble").get_attribute("hidden") is not None
 
 
-def check_tables(reader, program, run, diagnosis):
+def check_tables(reader, program, run):
     parts = reader.parts()
     page_tables.check_run_origin(parts, run, reader.folder)
     page_tables.check_metrics(parts, program, reader.folder)
-    page_tables.check_diagnosis_tables(parts, diagnosis, run)
 
 
 def check_report(reader, program, run):
     """Checks the page of the run alone and its diagnosis."""
-    diagnosis = json.loads((reader.folder / "diagnosis/diagnosis.json").read_text())
     check_texts(reader)
-    check_tables(reader, program, run, diagnosis)
-    page_charts.check_run_charts(reader, page_truth.settings_of(run), {}, 18, {})
-    check_diagnosis_charts(reader, diagnosis, reader.folder / "reality")
+    check_tables(reader, program, run)
+    page_charts.check_run_charts(reader, values_of(reader.folder / "figures"))
+    check_diagnosis_charts(reader, values_of(reader.folder / "diagnosis"), reader.folder / "reality")
     page_charts.check_log_buttons(reader)
     page_packing.check_slider(reader, run, (0, 2))
     check_themes(reader)
@@ -115,21 +95,16 @@ def check_report(reader, program, run):
     assert background(reader) == "rgb(22, 24, 27)", "as before printing"
 
 
-def shown_threshold(reader, setting):
-    """Thresholds [N], from the names of the curves of contacts per grain; a curve's band has another name."""
-    curve, = {trace["name"] for trace in reader.traces("coordination")
-              if trace["name"].startswith(setting) and not trace["name"].endswith("standard error")}
-    return float(re.fullmatch(r".*, tau (\S+) mN", curve)[1]) * 1e-3
+def values_of(folder):
+    return json.loads((folder / "figures.json").read_text())
 
 
 def check_against(reader, program, run):
     """The run compared with experiments: their points, and contacts per grain above the best thresholds."""
-    settings = page_truth.settings_of(run)
-    experiments = [page_truth.recording_of_experiment(reader.folder / folder) for folder in EXPERIMENTS]
-    thresholds = {name: page_truth.threshold_near(recordings, experiments, shown_threshold(reader, name))
-                  for name, recordings in settings.items()}
-    assert min(thresholds.values()) > 0
-    page_charts.check_run_charts(reader, settings, {REFERENCE[:43] + "…": experiments}, 11, thresholds)
+    figures = values_of(reader.folder / "figures_against")
+    assert [series["words"] for series in figures["top_force"]["series"]][2:] == [REFERENCE[:43] + "…"]
+    assert [series["remark"][:4] for series in figures["coordination"]["series"]] == ["tau ", "tau ", ""]
+    page_charts.check_run_charts(reader, figures)
     page_tables.check_comparison(reader.parts(), program, reader.folder, EXPERIMENTS, REFERENCE)
 
 

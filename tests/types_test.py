@@ -7,7 +7,7 @@ import pathlib
 import subprocess
 import sys
 
-ROOMS = ("results", "experiment", "importing", "observe", "calibration", "diagnosis", "convergence", "report", "challenge", "commands",
+ROOMS = ("results", "experiment", "importing", "observe", "calibration", "diagnosis", "convergence", "report", "figures", "challenge", "commands",
          "checked_json.py", "command.py", "comparing.py", "diagnosing.py", "errors.py", "files.py", "json_text.py", "look.py", "manifest.py",
          "number_text.py", "outputs.py", "parts.py", "problems.py", "program.py", "progress.py", "toml.py", "toml_lines.py",
          "warn.py")

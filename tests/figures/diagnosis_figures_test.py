@@ -11,6 +11,8 @@ import numpy as np
 from drawn import figures
 from matplotlib.patches import Rectangle
 
+from report.diagnosis_samples import bare, cause, cell
+
 THRESHOLD = 4
 LIMIT = 1e-3
 ORDER = [("load", 2.5), ("load", 5), ("load", 10), ("unload", 5), ("unload", 2.5)]  # from left to right
@@ -20,26 +22,24 @@ NAMED, OTHER = "#D55E00", "#6F9BBF"
 PROGRAM = ""
 
 
-def cause(effect, score, group, amplitude, confirmed):
-    return {"effect": effect, "amplitude": amplitude, "unit": "N", "confidence": 0.81, "group": group, "amplitude_error": 2e-4, "at_limit": False,
-            "explained": 0.5, "score": score, "confirmed_score": confirmed}
+def candidate(effect, score, group, amplitude, confirmed):
+    return cause(effect, amplitude, 2e-4, "N", group, confidence=0.81, explained=0.5, score=score, confirmed_score=confirmed)
 
 
 def diagnosis():
     """As written by `mcdem diagnose`: two indistinguishable effects, one of them simulated."""
     score = np.random.default_rng(1).normal(0, 3.5, (len(OBSERVABLES), len(ORDER)))
-    cells = [{"observable": name, "phase": phase, "displacement_mm": at, "z_score": score[row][column],
-              "z_score_refitted": score[row][column] / 2}
+    cells = [cell(name, phase, at, score[row][column], score[row][column] / 2)
              for row, name in enumerate(OBSERVABLES) for column, (phase, at) in reversed(list(enumerate(ORDER)))]
     pair = ["adhesion", "friction"]
-    ranking = [cause("adhesion", 9.5, pair, 5e-3, 8), cause("friction", 8.2, pair, 2e-3, None), cause("plate_tilt", -0.4, [], 1e-3, None)]
-    return {"verdict": "group", "gap": {"detected": True, "p_value": 0, "p_omnibus": 0, "p_directed": 0}, "where": [],
-            "causes": ranking[:2], "explanation": None, "ranking": ranking, "cells": cells, "where_threshold": THRESHOLD,
-            "shrink": {"held_out": "unloading", "before": 9, "after": 1, "fraction": 0.7, "interval": [0.6, 0.9], "placebo": 0.05,
-                       "metrics": {}, "confirmed": 0.65, "fitted_displacement_mm": [0, 3], "top_force": FORCES},
-            "detection_limits": [{"effect": name, "minimum_amplitude": LIMIT, "absorbed_by_calibration": 0, "unit": "N", "group": []}
-                                 for name in pair],
-            "not_measured": [], "nuisances": [], "not_testable": [], "refinements": [], "next": [], "provenance": {}, "seconds": 1}
+    ranking = [candidate("adhesion", 9.5, pair, 5e-3, 8), candidate("friction", 8.2, pair, 2e-3, None),
+               candidate("plate_tilt", -0.4, [], 1e-3, None)]
+    return bare("group") | {
+        "causes": ranking[:2], "ranking": ranking, "cells": cells, "where_threshold": THRESHOLD,
+        "shrink": {"held_out": "unloading", "before": 9, "after": 1, "fraction": 0.7, "interval": [0.6, 0.9], "placebo": 0.05,
+                   "metrics": {}, "confirmed": 0.65, "fitted_displacement_mm": [0, 3], "top_force": FORCES},
+        "detection_limits": [{"effect": name, "minimum_amplitude": LIMIT, "absorbed_by_calibration": 0, "unit": "N", "group": []}
+                             for name in pair]}
 
 
 def setUpModule():
@@ -150,11 +150,9 @@ class HowFar(unittest.TestCase):
 
 class Command(unittest.TestCase):
     def test_what_is_not_known_is_not_drawn(self):
-        bare = diagnosis()
-        bare.update(cells=[{"observable": "top_force", "phase": None, "displacement_mm": 1, "z_score": None, "z_score_refitted": None}],
-                    shrink=None)
-        bare["ranking"] = [cause("adhesion", None, [], None, None)]
-        (folder / "bare.json").write_text(json.dumps(bare))
+        unknown = diagnosis() | {"cells": [cell("top_force", None, 1, None, None)], "shrink": None,
+                                 "ranking": [candidate("adhesion", None, [], None, None)]}
+        (folder / "bare.json").write_text(json.dumps(unknown))
         self.assertEqual(mcdem("figures", "bare.json", "--out", "bare"), "bare/which.png\n")
 
     def test_a_diagnosis_stands_alone(self):

@@ -1,6 +1,7 @@
 """Figures of runs have the values of run.h5. run_figures_test.py PROGRAM"""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -14,25 +15,6 @@ from drawn import figures
 
 from report import page_truth as truth
 
-SCENE = """
-name = "small"
-[box]
-size_x = 0.06
-size_y = 0.06
-[packing]
-count = 30
-packing_fraction = 0.5
-[plate]
-start = 0.09
-end = 0.07
-[protocol]
-scans_per_stroke = 6
-scan_at_start = true
-[batch]
-replicas = 2
-[batch.vary]
-"contact.model" = ["independent", "mc_dem"]
-"""
 COLOURS = {"Independent contacts": "#0072B2", "MC-DEM": "#D55E00"}
 NAMES = ("top_force", "force_distribution", "coordination", "scaling")
 PROGRAM = ""
@@ -43,7 +25,7 @@ def setUpModule():
     folder = pathlib.Path(tempfile.mkdtemp())
     unittest.addModuleCleanup(shutil.rmtree, folder)
     mcdem = drawn.Program(PROGRAM, folder)
-    (folder / "scene.toml").write_text(SCENE)
+    (folder / "scene.toml").write_text('name = "small"' + truth.PLATE_SCENE)
     mcdem("run", "scene.toml", "--out", "run")
     mcdem("experiment", "from-run", "run", "--replica", "mc_dem #1", "--seed", "0", "--out", "reality")
     mcdem("figures", "run", "--against", "reality", "--displacement", "0.011", "--out", "against")
@@ -95,6 +77,16 @@ class Curves(unittest.TestCase):
         for name, recordings in settings.items():
             for phase, linestyle in ((0, "-"), (1, "--")):
                 self.expect_line(axes, name, linestyle, truth.curve(recordings, lambda r: truth.contacts_per_grain(r, 0), phase))
+
+    def test_coordination_above_the_best_threshold(self):
+        axes = figures.coordination(folder / "against")
+        for name, recordings in settings.items():
+            words, = (words for words in drawn.words_of(axes) if words.startswith(name))
+            tau = truth.threshold_near(recordings, [experiment], float(re.fullmatch(r".*, tau (\S+) mN", words)[1]) * 1e-3)
+            self.assertGreater(tau, 0)
+            for phase, linestyle in ((0, "-"), (1, "--")):
+                self.expect_line(axes, name, linestyle, truth.curve(
+                    recordings, lambda r, tau=tau: truth.contacts_per_grain(r, tau), phase))
 
     def test_scaling(self):
         axes = figures.scaling(folder / "run")

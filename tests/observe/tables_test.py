@@ -13,7 +13,7 @@ from mcdem.observe.compare import Comparison
 from mcdem.observe.estimate import Estimate
 from mcdem.observe.model_table import model_table
 from mcdem.observe.replicas import Setting, group_by_setting
-from mcdem.report.csv_text import csv_field
+from mcdem.report.csv_text import csv_of
 from mcdem.report.estimate_text import rate_note, with_error
 from mcdem.report.labels import one_line, shortened, stress_unit, styles_of, three_digits, words_for
 from mcdem.report.run_tables import csv_of_models, table_of_comparisons, table_of_energies, table_of_models, table_of_scaling
@@ -57,13 +57,14 @@ class Texts(unittest.TestCase):
 
         self.assertEqual(colours("mc_dem", "independent"), ["#D55E00", "#0072B2"])
         self.assertEqual(colours("mc_dem", "mc_dem"), ["#0072B2", "#56B4E9"])
+        self.assertEqual(len(set(colours(*["mc_dem"] * 7))), 7)
         many = colours(*["mc_dem"] * 40)
         self.assertEqual((len(set(many)), many[0], many[-1]), (40, "#440154", "#c8e020"))
 
     def test_csv_starts_no_formula(self):
-        for text, field in (("=1+1", "'=1+1"), (' "@x', '"\' ""@x"'), ("-0.5", "-0.5"), ("+1e-3", "+1e-3"), ("-x", "'-x"), ("a,b", '"a,b"'),
-                            ("--1", "'--1"), ("+inf", "'+inf"), ("a\nb", "a b")):
-            self.assertEqual(csv_field(text), field)
+        for cell, field in (("=1+1", "'=1+1"), (' "@x', '"\' ""@x"'), ("-0.5", "-0.5"), ("+1e-3", "+1e-3"), ("-x", "'-x"), ("a,b", '"a,b"'),
+                            ("--1", "'--1"), ("+inf", "'+inf"), ("a\nb", "a b"), (-0.1, "-0.1"), (3, "3"), (NAN, "")):
+            self.assertEqual(csv_of(["b"], [[cell, "x"]]), f"b\n{field},x\n")
 
     def test_rate_note(self):
         self.assertEqual(rate_note(False, 0.004), "error of forces by the plate's speed: at most 0.4 % in the mean over packings, 7.4 % in "

@@ -1,6 +1,5 @@
 """The page of a diagnosis, and what is printed and written beside diagnosis.json."""
 import contextlib
-import html.parser
 import io
 import json
 import os
@@ -11,13 +10,15 @@ import unittest
 import unittest.mock
 
 from diagnosis_samples import VERDICTS, bare, of, sample, with_texts
+from page_markup import Tags, content_of, markup_of, tables_of
 
 from mcdem.errors import InputError, RunError
 from mcdem.report.diagnosis import read_diagnosis
 from mcdem.report.diagnosis_page import add_diagnosis, write_diagnosis_page
-from mcdem.report.diagnosis_text import diagnosis_text, verdict_sentence
+from mcdem.report.diagnosis_text import diagnosis_text
 from mcdem.report.page import Page
 from mcdem.report.present_diagnosis import present
+from mcdem.report.verdict import verdict_words
 
 NUMBERS = (
     "p = 0.004", "p = 0.013", "p = 0.002", "0.264 ± 0.024 mJ/m²", "0.332 ± 0.052", "37 %", "71 %", "18.2",  # causes
@@ -27,42 +28,13 @@ NUMBERS = (
     "1834 s", "hydrogel.toml", "5f70bf18a086007016e948b04aed3b82103a36bea41755b6cddfaf10ace3c6ef")
 
 
-class Tags(html.parser.HTMLParser):
-    """Every tag is closed in the right order."""
-
-    def __init__(self):
-        super().__init__()
-        self.open, self.is_balanced = [], True
-
-    def handle_starttag(self, tag, attrs):
-        if tag not in ("meta", "img", "input", "br"):
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        self.is_balanced = bool(self.open) and self.open.pop() == tag and self.is_balanced
-
-
 def page_of(d, name=""):
     page = Page("diagnosis")
     add_diagnosis(page, of(d), name)
     return page.html("library")
 
 
-def markup_of(page):
-    return re.sub(r"(?s)(<(script|style)[^>]*>).*?</\2>", r"\1</\2>", page)
-
-
-def content_of(page):
-    return json.loads(re.search(r'(?s)id="content">(.*?)</script>', page)[1])
-
-
 class PageOfDiagnosis(unittest.TestCase):
-    def expect_well_formed(self, page):
-        tags = Tags()
-        tags.feed(page)
-        tags.close()
-        self.assertTrue(tags.is_balanced and not tags.open)
-
     def test_charts(self):
         content = content_of(page_of(sample("group")))
         self.assertEqual([chart["id"] for chart in content["charts"]], ["where", "which", "how_far", "gap_left"])
@@ -78,21 +50,33 @@ class PageOfDiagnosis(unittest.TestCase):
                       ": out/diagnosis</p>"):
             self.assertIn(words, page)
 
+    def test_gains_and_metrics_are_in_their_columns(self):
+        d = sample("effect")
+        tables = tables_of(page_of(d))
+        head, row = tables["Effects consistent with the gap"]
+        self.assertEqual(row[head.index("gain in log likelihood"):][:2], [f"{d['causes'][0]['score']:.1f}", "44.1"])
+        self.assertEqual(head[head.index("gain in log likelihood") + 1], "gain in full simulations")
+        shrink = d["shrink"]
+        names = {"Rtop": "1", "errf [N]": "0", "errZ": "0", "bhat": "0"}  # perfect
+        self.assertEqual(tables["Before and after"], [
+            ["", "before", "after", "perfect"], ["gap, noise subtracted", *(f"{shrink[key]:.3g}" for key in ("before", "after")), "0"],
+            *([name, *(f"{value:.3g}" for value in shrink["metrics"][name.split()[0]]), best] for name, best in names.items())])
+
     def test_hostile_texts_are_shown_and_not_executed(self):
         hostile = "<script>alert(1)</script>\"'&`touch pwned1`'; system('touch pwned2') %s%n \\ \x01"
         page = page_of(with_texts(sample("effect"), hostile), hostile)
         self.assertNotIn("<script>alert", page)
         self.assertRegex(page, "&lt;script&gt;alert\\(1\\)&lt;/script&gt;&#34;&#39;&amp;`touch pwned1`")
-        self.expect_well_formed(page)
+        self.assertTrue(Tags(page).is_balanced)
 
     def test_every_verdict_has_a_page_also_without_charts(self):
         headings = set()
         for verdict in VERDICTS:
             page = page_of(sample(verdict))
-            self.expect_well_formed(page)
+            self.assertTrue(Tags(page).is_balanced)
             headings.add(re.search("<h1>([^<]*)", page)[1])
             empty = page_of(bare(verdict))
-            self.expect_well_formed(empty)
+            self.assertTrue(Tags(empty).is_balanced)
             self.assertEqual(content_of(empty)["charts"], [])
             self.assertEqual("What comes nearest" in page, verdict == "unknown_effect")
         self.assertEqual(len(headings), len(VERDICTS))
@@ -148,7 +132,7 @@ class Presented(unittest.TestCase):
         self.write(d)
         self.presented(page=False, figures=False)
         written = json.loads((self.folder / "diagnosis.json").read_text())
-        self.assertEqual(written["sentence"], verdict_sentence(of(d)))
+        self.assertEqual(written["sentence"], verdict_words(of(d)).sentence)
         keys = list(written)
         self.assertEqual(keys[keys.index("seconds") + 1], "sentence")
         del written["sentence"]

@@ -5,8 +5,8 @@ import unittest
 
 from diagnosis_samples import VERDICTS, bare, cause, cell, fit, missing, of, packing, sample, with_texts
 
-from mcdem.report.diagnosis_text import diagnosis_text, verdict_headline, verdict_lines, verdict_sentence
-from mcdem.report.verdict import suspects_of
+from mcdem.report.diagnosis_text import diagnosis_text, verdict_lines
+from mcdem.report.verdict import suspects_of, verdict_words
 
 
 def changed(verdict, change):
@@ -154,7 +154,7 @@ class Texts(unittest.TestCase):
     def test_cases(self):
         for verdict, change, about, parts in CASES:
             d = changed(verdict, change)
-            text = {"sentence": verdict_sentence, "headline": verdict_headline}[about](of(d)) if about.islower() else line(d, about)
+            text = getattr(verdict_words(of(d)), about) if about.islower() else line(d, about)
             for part in parts:
                 with self.subTest(verdict, about=about, part=part):
                     self.expect(text, part)
@@ -172,19 +172,19 @@ class Texts(unittest.TestCase):
         for verdict in VERDICTS:
             for d in (sample(verdict), with_texts(sample(verdict), "a\nb\r"), bare(verdict)):
                 self.assertEqual(diagnosis_text(of(d)).count("\n"), 6)
-                for _, says in [*verdict_lines(of(d)), ("", verdict_sentence(of(d)))]:
+                for _, says in [*verdict_lines(of(d)), ("", verdict_words(of(d)).sentence)]:
                     self.assertRegex(says, r"[^.]\.$")
                     self.assertNotRegex(says, "[\n\r]")
 
     def test_no_verdict_claims_proof(self):
         for verdict in VERDICTS:
             d = of(sample(verdict))
-            text = diagnosis_text(d) + verdict_sentence(d)
+            text = diagnosis_text(d) + verdict_words(d).sentence
             for claim in ("caused by", "because of", "is due to", "proves", "is proven"):
                 self.assertNotIn(claim, text)
             if verdict not in ("no_gap", "unknown_effect"):
                 self.assertTrue(dict(verdict_lines(d))["Which"].startswith("consistent with "))
-                self.assertIn("consistent with", verdict_sentence(d))
+                self.assertIn("consistent with", verdict_words(d).sentence)
 
     def test_lines_are_aligned(self):
         lines = diagnosis_text(of(sample("effect"))).splitlines()
@@ -205,9 +205,9 @@ class Texts(unittest.TestCase):
                 d["explanation"]["leaves_more_than_noise"] = False
                 self.assertIn("cannot be distinguished from noise, with the shifts of parameters under First", line(d, "How far"))
             self.assertTrue(diagnosis_text(of(d)).startswith(f"First:   {check}\nGap:"))
-            self.assertEqual(verdict_sentence(of(d)), f"C{check[1:]} {verdict_sentence(before)}")
-            self.assertEqual(verdict_headline(of(d)),
-                             f"Check first: modulus of the grains (at least 12 sigma) and 1 more. {verdict_headline(before)}")
+            self.assertEqual(verdict_words(of(d)).sentence, f"C{check[1:]} {verdict_words(before).sentence}")
+            self.assertEqual(verdict_words(of(d)).headline,
+                             f"Check first: modulus of the grains (at least 12 sigma) and 1 more. {verdict_words(before).headline}")
 
     def test_suspects_are_the_best_parameter_or_those_at_their_bounds(self):
         d = bare() | {"nuisances": [fit("gamma", 0.2, 0.01, 0.05, "", True), fit("modulus", 0.3, 0.02, 0.05, "relative", True),
@@ -238,7 +238,7 @@ class Agreement(unittest.TestCase):
 
     def all_of(self, d):
         diagnosis = of(d)
-        return f"{verdict_headline(diagnosis)}; {verdict_sentence(diagnosis)}; {diagnosis_text(diagnosis)}"
+        return f"{verdict_words(diagnosis).headline}; {verdict_words(diagnosis).sentence}; {diagnosis_text(diagnosis)}"
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import unittest
 from diagnosis_samples import VERDICTS, bare, cause, cell, entry, of, sample
 
 from mcdem.report.diagnosis_charts import diagnosis_charts
+from mcdem.report.diagnosis_text import where_line
 from mcdem.report.diagnosis_values import diagnosis_figure_values, group_letters
 from mcdem.report.diagnosis_words import percent
 
@@ -160,7 +161,6 @@ class Charts(unittest.TestCase):
 
 class Agreement(unittest.TestCase):
     def test_framed_cells_are_in_the_text(self):
-        from mcdem.report.diagnosis_where import where_line
         for before in (1, 3.8, 3.95, -9, None):
             for after in (0.5, -3.95, math.pi, None):
                 d = bare("unknown_effect") | {"where_threshold": 3.9, "cells": [cell("top_force", "load", 10, before, after),

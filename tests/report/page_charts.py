@@ -1,34 +1,12 @@
-"""Charts of runs and diagnoses as plotly.js stores them, compared with the data: values, bands, labels, logarithmic
-axes."""
-import dataclasses
-import re
-
+"""Charts of runs as plotly.js stores them, compared with figures.json, whose values tests/figures compares with run.h5: values, bands,
+labels, logarithmic axes."""
 import numpy as np
 
-from report import page_truth as truth
-
 LOG_AXES = {"top_force": "xy", "scaling": "xy", "how_far": "y"}
-
-
-@dataclasses.dataclass
-class Drawn:
-    """An expected curve. `label`: format of the hover text with x, y and e."""
-    name: str
-    curve: truth.Curve
-    label: str
-    points: bool = False
-    dash: str | None = None
-    symbol: str | None = None
-
-    @property
-    def has_errors(self):
-        return bool(np.isfinite(self.curve.error).all())
-
-    def words(self, point):
-        """Both roundings of a number half-way between two."""
-        label = self.label if self.has_errors else re.sub(r" ± \{e\S*( N)?", "", self.label)
-        exact = np.array([self.curve.x[point], self.curve.y[point], self.curve.error[point]])
-        return [label.format(**dict(zip("xye", exact * (1 + shift)))) for shift in (-1e-9, 1e-9)]
+# Label of a point with x, y and its standard error e.
+LABELS = {"top_force": ("{x:.2f} mm, {phase}ing\n{y:.4g} N", " ± {e:.2g} N"), "scaling": ("{x:.4g} mN m\n{y:.4g} N", " ± {e:.2g} N"),
+          "force_distribution": ("{x:.4g} mN\n{y:.3g} per mN", " ± {e:.2g}"),
+          "coordination": ("{x:.2f} mm, {phase}ing\nZ = {y:.3f}", " ± {e:.2g}")}
 
 
 def expect_close(found, expected, what, relative=1e-6):
@@ -49,123 +27,67 @@ def plain(words):
     return words.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
 
 
-def check_band(band, drawn, what):
-    """A band: forward along mean + standard error, back along mean - standard error; at most two thirds below the
-    mean."""
-    c = drawn.curve
+def check_band(band, x, y, error, what):
+    """Forward along mean + standard error, back along mean - standard error; at most two thirds below the mean."""
     assert band["fill"] == "toself" and band["hoverinfo"] == "skip", what
-    low = np.where(c.y > 0, np.maximum(c.y - c.error, c.y / 3), c.y - c.error)
-    expect_close(band["x"], np.append(c.x, c.x[::-1]), f"{what}: band along x")
-    expect_close(band["y"], np.append(c.y + c.error, low[::-1]), f"{what}: band")
+    low = np.where(y > 0, np.maximum(y - error, y / 3), y - error)
+    expect_close(band["x"], np.append(x, x[::-1]), f"{what}: band along x")
+    expect_close(band["y"], np.append(y + error, low[::-1]), f"{what}: band")
 
 
-def check_curve(trace, drawn, what):
-    c = drawn.curve
-    assert not trace["fill"] and plain(trace["name"]) == drawn.name, (what, trace["name"], drawn.name)
-    expect_close(trace["x"], c.x, f"{what}: x")
-    expect_close(trace["y"], c.y, f"{what}: y")
-    assert trace["mode"] == ("markers" if drawn.points else "lines+markers"), what
-    if drawn.dash:
-        assert trace["line"]["dash"] == drawn.dash, what
-    if drawn.symbol:
-        assert trace["marker"]["symbol"] == drawn.symbol, what
-    if drawn.has_errors:
-        expect_close(trace["customdata"], c.error, f"{what}: standard errors")
-    if drawn.has_errors and drawn.points:
-        expect_close(trace["error_y"]["array"], c.error, f"{what}: bars")
+def check_labels(reader, chart, number, name, label, points):
+    """At all points; both roundings of a number half-way between two are right."""
+    for point, values in enumerate(points):
+        shown, words = reader.hover(chart, number, point)
+        either = [label.format(**dict(zip("xye", values * (1 + shift)))) for shift in (-1e-9, 1e-9)]
+        assert any(same_words(words, one) for one in either), (chart, name, point, words, either)
+        assert shown == name, (chart, shown, name)
 
 
-def check_labels(reader, chart, number, drawn):
-    """Checks the labels at all points, and that there is one for each."""
-    for point in range(len(drawn.curve.x)):
-        name, words = reader.hover(chart, number, point)
-        expected = drawn.words(point)
-        assert any(same_words(words, either) for either in expected), (chart, drawn.name, point, words, expected)
-        assert name == drawn.name, (chart, name, drawn.name)
+def check_curve(reader, chart, traces, series, name, curve):
+    """Takes the curve from the front of the traces, and its band if errors are known."""
+    x, y, error = (np.array(curve[key], float) for key in ("x", "y", "standard_error"))
+    what, has_errors, is_points = f"{chart}, {name}, {curve['phase']}", np.isfinite(error).all(), series["is_reference"] or chart == "scaling"
+    if has_errors and not is_points:
+        check_band(traces.pop(0)[1], x, y, error, what)
+    number, trace = traces.pop(0)
+    assert not trace["fill"] and plain(trace["name"]) == name, (what, trace["name"])
+    expect_close(trace["x"], x, f"{what}: x")
+    expect_close(trace["y"], y, f"{what}: y")
+    assert trace["mode"] == ("markers" if is_points else "lines+markers"), what
+    loads = curve["phase"] == "load" or chart == "force_distribution"
+    if is_points:
+        assert trace["marker"]["symbol"] == ("circle" if loads else "circle-open"), what
+    else:
+        assert trace["line"]["dash"] == ("solid" if loads else "dash"), what
+    if has_errors:
+        expect_close(trace["error_y"]["array"] if is_points else trace["customdata"], error, f"{what}: standard errors")
+    label, of_error = LABELS[chart]
+    check_labels(reader, chart, number, name, (label + of_error * has_errors).replace("{phase}", curve["phase"]), np.array([x, y, error]).T)
 
 
-def check_chart(reader, chart, expected):
-    """All traces of a chart in order, a band before its line."""
+def check_chart(reader, chart, values):
+    """All traces in order: curves, and for the scaling law a line from a thousandth of the largest product to the largest."""
     traces = list(enumerate(reader.traces(chart)))
-    for drawn in expected:
-        what = f"{chart}, {drawn.name}, {drawn.label}"
-        if drawn.has_errors and not drawn.points:
-            check_band(traces.pop(0)[1], drawn, what)
-        number, trace = traces.pop(0)
-        check_curve(trace, drawn, what)
-        check_labels(reader, chart, number, drawn)
+    for series in values["series"]:
+        name = series["words"] + (f", {series['remark']}" if series["remark"] and chart == "coordination" else "")
+        for curve in series["curves"]:
+            check_curve(reader, chart, traces, series, name, curve)
+        if "slope" in series:
+            number, line = traces.pop(0)
+            ends = max(max(curve["x"]) for curve in series["curves"]) * np.array([1e-3, 1])
+            expect_close([line["x"], line["y"]], [ends, series["slope"] * ends], f"{chart}, {name}: line", 1e-5)
+            words = reader.hover(chart, number, 1)[1]
+            assert same_words(words, f"slope {series['slope'] * 1e3:.4g} /m"), words
     assert traces == [], (chart, "more than expected", traces)
 
 
-def both_phases(name, recordings, quantity, label, points):
-    for phase, words, dash, symbol in ((0, "loading", "solid", "circle"), (1, "unloading", "dash", "circle-open")):
-        yield Drawn(name, truth.curve(recordings, quantity, phase), "{x:.2f} mm, " + words + "\n" + label, points,
-                    None if points else dash, symbol if points else None)
-
-
-def check_top_force(reader, settings, references):
-    expected = []
-    for sources, points in ((settings, False), (references, True)):
-        for name, recordings in sources.items():
-            expected += both_phases(name, recordings, lambda r: r.top_force, "{y:.4g} N ± {e:.2g} N", points)
-    check_chart(reader, "top_force", expected)
-
-
-def check_distribution(reader, settings, references, displacement_mm):
-    curves = truth.distributions({**settings, **references}, displacement_mm)
-    check_chart(reader, "force_distribution",
-                [Drawn(name, c, "{x:.4g} mN\n{y:.3g} per mN ± {e:.2g}", points=name in references)
-                 for name, c in curves.items()])
-    nearest = next(iter(settings.values()))
-    reached = nearest[0].displacement_mm[truth.scan_nearest(nearest, displacement_mm)]
+def check_run_charts(reader, figures):
+    for chart in LABELS:
+        check_chart(reader, chart, figures[chart])
     title = reader.element("figure:has(#force_distribution) h3").text
-    assert title == f"Contact forces at {reached:.1f} mm, unloading", title
+    assert title == f"Contact forces at {figures['force_distribution']['displacement_mm']:.1f} mm, unloading", title
     assert [kind for kind, _ in reader.axes("force_distribution")] == ["linear", "log"]
-
-
-def check_coordination(reader, settings, references, thresholds):
-    """`thresholds` [N] by setting; for a reference all contacts count."""
-    expected = []
-    for name, recordings in settings.items():
-        tau = thresholds.get(name, 0)
-        shown = f"{name}, tau {tau * 1e3:.2f} mN" if thresholds else name
-        expected += both_phases(shown, recordings, lambda r, tau=tau: truth.contacts_per_grain(r, tau),
-                                "Z = {y:.3f} ± {e:.2g}", False)
-    for name, recordings in references.items():
-        expected += both_phases(name, recordings, lambda r: truth.contacts_per_grain(r, 0),
-                                "Z = {y:.3f} ± {e:.2g}", True)
-    check_chart(reader, "coordination", expected)
-
-
-def scaling_line(name, curves):
-    """A line through zero, from a thousandth of the largest product to the largest."""
-    slope, end = truth.slope_through_zero(curves), max(c.x.max() for c in curves)
-    x = np.array([end / 1000, end])
-    return name, x, slope * 1e-3 * x, f"slope {slope:.4g} /m"
-
-
-def check_scaling(reader, settings):
-    """Three traces per setting: loading, unloading, fitted line."""
-    traces = reader.traces("scaling")
-    assert len(traces) == 3 * len(settings), "experiments do not tell the packing fraction"
-    for place, (name, recordings) in enumerate(settings.items()):
-        curves = [truth.scaling_curve(recordings, phase) for phase in (0, 1)]
-        for phase, c in enumerate(curves):
-            drawn = Drawn(name, c, "{x:.4g} mN m\n{y:.4g} N ± {e:.2g} N", True, None, ("circle", "circle-open")[phase])
-            check_curve(traces[3 * place + phase], drawn, f"scaling, {name}, {truth.PHASES[phase]}")
-            check_labels(reader, "scaling", 3 * place + phase, drawn)
-        _, x, y, label = scaling_line(name, curves)
-        expect_close(traces[3 * place + 2]["x"], x, f"scaling, {name}: line")
-        expect_close(traces[3 * place + 2]["y"], y, f"scaling, {name}: line", 1e-5)
-        words = reader.hover("scaling", 3 * place + 2, 1)[1]
-        assert same_words(words, label), (words, label)
-
-
-def check_run_charts(reader, settings, references, displacement_mm, thresholds):
-    check_top_force(reader, settings, references)
-    check_distribution(reader, settings, references, displacement_mm)
-    check_coordination(reader, settings, references, thresholds)
-    check_scaling(reader, settings)
 
 
 def press(reader, chart):

@@ -2,14 +2,13 @@
 import base64
 import gzip
 import hashlib
-import html.parser
-import json
 import pathlib
 import re
 import tempfile
 import unittest
 
 import plotly.graph_objects as go
+from page_markup import Tags, content_of, markup_of
 
 from mcdem.errors import InputError, RunError
 from mcdem.report.charts import plot_text
@@ -33,36 +32,6 @@ def filled_page(text):
     page.chart(Chart("a_chart", text, text, go.Figure(go.Scatter(name=text, x=[1], y=[float("nan")])), "xy"))
     page.packing({"settings": [{"label": text}]}, text)
     return page
-
-
-def content_of(page):
-    return json.loads(re.search(r'(?s)id="content">(.*?)</script>', page)[1])
-
-
-def markup_of(page):
-    """The page without scripts, style sheet and plotting library."""
-    return re.sub(r"(?s)(<(script|style)[^>]*>).*?</\2>", r"\1</\2>", page)
-
-
-class Tags(html.parser.HTMLParser):
-    """Whether every tag is closed in the right order; the texts between tags."""
-
-    def __init__(self, page):
-        super().__init__()
-        self.open, self.is_balanced, self.texts = [], True, []
-        self.feed(page)
-        self.close()
-        self.is_balanced = self.is_balanced and not self.open
-
-    def handle_starttag(self, tag, attrs):
-        if tag not in ("meta", "img", "input", "br"):
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        self.is_balanced = self.is_balanced and bool(self.open) and self.open.pop() == tag
-
-    def handle_data(self, data):
-        self.texts.append(data)
 
 
 class PageTest(unittest.TestCase):

@@ -6,6 +6,24 @@ import tomllib
 
 import numpy as np
 
+PLATE_SCENE = """
+[box]
+size_x = 0.06
+size_y = 0.06
+[packing]
+count = 30
+packing_fraction = 0.5
+[plate]
+start = 0.09
+end = 0.07
+[protocol]
+scans_per_stroke = 6
+scan_at_start = true
+[batch]
+replicas = 2
+[batch.vary]
+"contact.model" = ["independent", "mc_dem"]
+"""
 CELL_SCENE = """
 name = "cell"
 [container]

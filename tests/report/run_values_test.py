@@ -3,6 +3,7 @@ import dataclasses
 import json
 import math
 import pathlib
+import re
 import sys
 import unittest
 
@@ -12,9 +13,9 @@ sys.path[:0] = [str(pathlib.Path(__file__).parents[1] / "observe")]
 from synthetic import Law, cell, changed, contacts_of, recording, rows, run, with_parameters  # noqa: E402
 
 from mcdem.observe.replicas import Setting, group_by_setting  # noqa: E402
-from mcdem.report.figure_data import FigureOptions, figure_data  # noqa: E402
-from mcdem.report.figure_values import figure_file, figure_values  # noqa: E402
-from mcdem.report.labels import reference_style, styles_of  # noqa: E402
+from mcdem.report.charts import run_chart  # noqa: E402
+from mcdem.report.figure_data import FigureOptions  # noqa: E402
+from mcdem.report.figure_values import DEFINITIONS, figure_file  # noqa: E402
 from mcdem.report.run_figures import run_figures  # noqa: E402
 from mcdem.results import Phase  # noqa: E402
 
@@ -25,8 +26,8 @@ def two_models(replicas=1, contacts=300):
 
 def values_of(settings, reference=None, **options):
     """As figures.json has them."""
-    options = FigureOptions(**options)
-    return json.loads(figure_file(figure_values(run_figures(figure_data(settings, reference, options), options).figures)))
+    made = run_figures(settings, reference, FigureOptions(**options))
+    return json.loads(figure_file({figure.name: figure.values() for figure in made.figures}))
 
 
 def values_of_run(made, reference=None, **options):
@@ -63,15 +64,13 @@ class RunValuesTest(unittest.TestCase):
         self.assertAlmostEqual(curve["standard_error"][9], np.std(tops, ddof=1) / 2, places=9)
 
     def test_the_distribution_is_that_of_the_level_nearest_to_the_request(self):
-        for displacement, level, phase in ((18e-3, 18, "unload"), (50e-3, 30, "load"), (0.0, 0, "unload")):  # 30 mm: the turning point
-            values = values_of_run(two_models(), distribution_displacement=displacement)["force_distribution"]
+        stopped = each(two_models(), lambda one: rows(one, one.scans.phase == Phase.load))  # before unloading
+        for made, displacement, level, phase in ((two_models(), 18e-3, 18, "unload"), (two_models(), 0.0, 0, "unload"),
+                                                 (two_models(), 50e-3, 30, "load"),  # 30 mm: the turning point
+                                                 (stopped, 50e-3, 30, "load")):
+            values = values_of_run(made, distribution_displacement=displacement)["force_distribution"]
             self.assertAlmostEqual(values["displacement_mm"], level, places=9)
             self.assertEqual(values["series"][0]["curves"][0]["phase"], phase)
-
-    def test_the_distribution_is_of_loading_if_runs_stopped_before_unloading(self):
-        values = values_of_run(each(two_models(), lambda one: rows(one, one.scans.phase == Phase.load)), distribution_displacement=50e-3)["force_distribution"]
-        self.assertEqual(values["series"][0]["curves"][0]["phase"], "load")
-        self.assertAlmostEqual(values["displacement_mm"], 30, places=9)
 
     def test_densities_integrate_to_nearly_one(self):
         curve = values_of_run(run([Law(contacts=5000)], 1))["force_distribution"]["series"][0]["curves"][0]
@@ -114,15 +113,15 @@ class RunValuesTest(unittest.TestCase):
 
     def test_missing_data_are_explained(self):
         made = each(two_models(contacts=0), without_averages)
-        figures = run_figures(figure_data(group_by_setting(made), None, FigureOptions()), FigureOptions())
+        figures = run_figures(group_by_setting(made))
         self.assertEqual([figure.name for figure in figures.figures], ["top_force"])
         self.assertEqual([missing.split(":")[0] for missing in figures.missing], ["the force distribution", "Z", "the scaling law"])
         self.assertIn("no contacts were recorded", figures.missing[0])
 
     def test_nothing_is_left_after_all_cycles_are_discarded(self):
         made = each(two_models(), lambda one: with_parameters(one, protocol__discard="1"))
-        figures = run_figures(figure_data(group_by_setting(made), None, FigureOptions()), FigureOptions())
-        self.assertEqual((figures.figures, figures.missing), ((), ("any quantity: no scans are left after the discarded cycles",)))
+        figures = run_figures(group_by_setting(made))
+        self.assertEqual((figures.figures, figures.missing), ([], ["any quantity: no scans are left after the discarded cycles"]))
 
     def test_the_file_has_its_format_and_any_label(self):
         setting = dataclasses.replace(group_by_setting(two_models())[0], label="\udcff\" \\ `x`\n")
@@ -130,19 +129,22 @@ class RunValuesTest(unittest.TestCase):
         self.assertEqual(values["mcdem_figures"], 1)
         self.assertEqual(values["top_force"]["series"][0]["words"], "\ufffd\" \\ `x` ")
 
-    def test_a_model_keeps_its_colour_and_settings_differ(self):
-        both = group_by_setting(two_models())
-        self.assertEqual(styles_of(both)[1], styles_of(both[1:])[0])
-        for count in (7, 40):
-            colours = {style.colour for style in styles_of(both[:1] * count)}
-            self.assertEqual(len(colours), count)
-            self.assertNotIn(reference_style().colour, colours)
+    def test_a_figure_is_one_function(self):
+        """That of CONTRIBUTING.md: its values and its chart follow from it."""
+        from mcdem.report import run_figures as room
+        guide = (pathlib.Path(__file__).parents[2] / "CONTRIBUTING.md").read_text("utf-8")
+        exec(re.search(r"(?s)```py\n(@run_figure.*?)```", guide)[1], dict(vars(room)))
+        self.addCleanup(DEFINITIONS.pop, "packing_fractions")
+        figure = run_figures(group_by_setting(two_models())).figures[-1]
+        chart = run_chart(figure)
+        self.assertEqual((figure.name, chart.name, len(chart.figure.data)), ("packing_fractions", "packing_fractions", 4))
+        self.assertEqual(figure.values()["series"][0]["curves"][0]["y"], list(chart.figure.data[0].y))
 
 
 class ProgrammeValuesTest(unittest.TestCase):
     def figures_of(self, *recordings):
-        made = run_figures(figure_data([Setting("mc_dem", recordings)], None, FigureOptions()), FigureOptions())
-        self.assertEqual(made.missing, ())
+        made = run_figures([Setting("mc_dem", recordings)])
+        self.assertEqual(made.missing, [])
         return {figure.name: figure for figure in made.figures}
 
     def test_of_a_cell_show_stresses_and_strains(self):

@@ -19,7 +19,7 @@ def compact_json(document: Any) -> str:
     return json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
 
-def json_text(document: Any, sort_keys: bool = False) -> str:
+def json_text(document: Any, sort_keys: bool = False, indent: int = 2) -> str:
     """Indented, with a final line feed; what was invalid UTF-8 becomes replacement characters. All numbers must be finite."""
-    text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False, sort_keys=sort_keys)
+    text = json.dumps(document, indent=indent, ensure_ascii=False, allow_nan=False, sort_keys=sort_keys)
     return re.sub("[\ud800-\udfff]", "\ufffd", text) + "\n"

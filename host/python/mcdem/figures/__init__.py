@@ -8,16 +8,22 @@ There is one function per figure. Its first argument is a folder written by a co
 contains all values; these functions only draw them. `axes`: axes to draw into; by default new ones with the size of the figure in
 print. Functions return the axes, or an array of axes if a figure has several.
 """
+from collections.abc import Callable
+from typing import Any
+
+from ..report.figure_values import DEFINITIONS
 from .challenge import confidence, confusion, power
 from .convergence import convergence
 from .diagnosis import how_far, where, which
-from .runs import (cell_coordination, coordination, displacement_time, force_displacement, force_distribution, force_time,
-                   pressure_strain, pressure_time, scaling, shear_strain_time, shear_stress_strain, shear_stress_time,
-                   stress_path, top_force, volume_time)
+from .runs import figure_function
 from .style import COLUMN, PAGE, STYLE, new_axes, save
 from .values import read
 
-__all__ = ["COLUMN", "PAGE", "STYLE", "cell_coordination", "confidence", "confusion", "convergence", "coordination",
-           "displacement_time", "force_displacement", "force_distribution", "force_time", "how_far", "new_axes", "power",
-           "pressure_strain", "pressure_time", "read", "save", "scaling", "shear_strain_time", "shear_stress_strain",
-           "shear_stress_time", "stress_path", "top_force", "volume_time", "where", "which"]
+globals().update({name: figure_function(name) for name in DEFINITIONS})
+
+__all__ = ["COLUMN", "PAGE", "STYLE", "confidence", "confusion", "convergence", "how_far", "new_axes", "power", "read", "save",
+           "where", "which", *DEFINITIONS]
+
+
+def __getattr__(name: str) -> Callable[..., Any]:  # for type checkers: the figures of runs are in no list here
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

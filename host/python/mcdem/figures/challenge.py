@@ -1,4 +1,6 @@
 """Figures of the score of a challenge."""
+from typing import Any
+
 import matplotlib.colors
 import matplotlib.patches
 import matplotlib.ticker
@@ -6,14 +8,14 @@ import numpy as np
 
 from ..report.diagnosis_words import words_of
 from .style import GREY, key, new_axes, plain, styled
-from .values import read
+from .values import Source, read
 
 PARTS = matplotlib.colors.LinearSegmentedColormap.from_list("parts", [(0, "#F1F4F7"), (0.25, "#C3DAEC"), (0.6, "#3F86BF"), (1, "#053B78")])
 MEASURED, RIGHT = "#0072B2", "#D55E00"
 
 
 @styled
-def confusion(source, axes=None):
+def confusion(source: Source, axes: Any = None) -> Any:
     """Cases by truth (rows) and verdict (columns), shaded by the fraction of the row; framed: right answers."""
     values = read(source, "confusion")
     cases = np.array(values["cases"], float)
@@ -40,7 +42,7 @@ def confusion(source, axes=None):
 
 
 @styled
-def power(source, axes=None):
+def power(source: Source, axes: Any = None) -> Any:
     """Fraction of detected cases by amplitude over the predicted detection limit, with 95 % intervals."""
     axes = proportions(read(source, "power"), axes)
     axes.set_xscale("log")
@@ -51,14 +53,14 @@ def power(source, axes=None):
 
 
 @styled
-def confidence(source, axes=None):
+def confidence(source: Source, axes: Any = None) -> Any:
     """Fraction of right verdicts by stated probability, with 95 % intervals."""
     axes = proportions(read(source, "confidence"), axes)
     axes.set_xlim(-0.02, 1.04)
     return axes
 
 
-def proportions(values, axes):
+def proportions(values: dict[str, Any], axes: Any) -> Any:
     axes = axes or new_axes(height=70)
     measured, predicted = values["measured"], values["predicted"]
     part, interval = np.array(measured["part"]), np.array(measured["interval"]).T

@@ -1,15 +1,17 @@
 """Figure of a convergence study."""
+from typing import Any
+
 import matplotlib.patches
 import numpy as np
 
 from .style import PAGE, key, new_axes, plain, styled
-from .values import read
+from .values import Source, read
 
 EDGE = 4  # larger values are drawn at the edge
 
 
 @styled
-def convergence(source, axes=None):
+def convergence(source: Source, axes: Any = None) -> Any:
     """Largest error of every observable from each cause, over its limit, with two standard errors. Shaded: within the limits."""
     values = read(source, "convergence")
     rows, causes = values["rows"], values["causes"]
@@ -29,7 +31,7 @@ def convergence(source, axes=None):
     return axes
 
 
-def draw_error(axes, y, error, cause):
+def draw_error(axes: Any, y: float, error: dict[str, Any], cause: dict[str, Any]) -> None:
     x, bar = error["over_limit"], 2 * (error["standard_error"] or 0)
     low, shown, high = np.clip((x - bar, x, x + bar), -EDGE + 0.05, EDGE - 0.05)
     axes.plot((low, high), (y, y), color=cause["colour"], linewidth=0.7)

@@ -1,21 +1,25 @@
 """Figures of a diagnosis: location of the gap, consistent effects, gap reduction."""
+from typing import Any
+
 import matplotlib.cm
 import matplotlib.colors
 import matplotlib.patches
 import numpy as np
 
-from .style import COLUMN, INK, PAGE, is_below, key, line, new_axes, plain, styled
-from .values import read
+from .style import COLUMN, INK, PAGE, Entry, is_below, key, line, new_axes, plain, styled
+from .values import Source, read
 
 # Blue: the experiment is lower than the simulation; orange: higher.
 BELOW_ABOVE = matplotlib.colors.LinearSegmentedColormap.from_list("below_above", [
     (0, "#053B78"), (0.2, "#3F86BF"), (0.375, "#B9D5EA"), (0.5, "#F4F4F2"), (0.625, "#F9D3AE"), (0.8, "#E08530"), (1, "#8F3A04")])
+Values = dict[str, Any]
+
 MAX_NUMBERS = 12  # maximum number of columns with printed numbers
-EXPERIMENT = {"color": INK, "linestyle": "", "marker": "o", "markersize": 2.2}
+EXPERIMENT: Values = {"color": INK, "linestyle": "", "marker": "o", "markersize": 2.2}
 
 
 @styled
-def where(source, axes=None):
+def where(source: Source, axes: Any = None) -> Any:
     """Gap by observable and displacement, in sigmas of its noise. Left: stated parameters; right: parameters fitted
     within their uncertainty. Framed: significant among all cells. `axes`: two."""
     values = read(source, "where")
@@ -33,7 +37,7 @@ def where(source, axes=None):
     return axes
 
 
-def draw_cell(axes, values, cell, scale):
+def draw_cell(axes: Any, values: Values, cell: Values, scale: Any) -> None:
     x, row, score = values["columns"][cell["column"]]["x"], cell["row"], cell["z_score"]
     axes.add_patch(matplotlib.patches.Rectangle((x - 0.49, row - 0.49), 0.98, 0.98, facecolor=BELOW_ABOVE(scale(score)), linewidth=0))
     if not cell["stands_out"]:
@@ -44,7 +48,7 @@ def draw_cell(axes, values, cell, scale):
         axes.text(x, row, f"{score:.1f}", fontsize=5, ha="center", va="center_baseline", color="white" if is_dark else "#111111")
 
 
-def set_columns(axes, values, heading):
+def set_columns(axes: Any, values: Values, heading: str) -> None:
     """Labels of the columns, in order of time: loading, then unloading."""
     columns = values["columns"]
     shown = columns[::len(columns) // 12 + 1]  # more labels would overlap
@@ -63,7 +67,7 @@ GROUP, AMPLITUDE, PROBABILITY = -3, 4, 105  # columns next to the axes of `which
 
 
 @styled
-def which(source, axes=None):
+def which(source: Source, axes: Any = None) -> Any:
     """Candidate effects. Left: gain in likelihood of each (diamonds: from real runs); candidates that share a letter cannot be
     distinguished. Right: fitted amplitude with its 90 % interval over the detection limit of these data (dashed line), the
     amplitude with one standard error as text, and the probability that the effect is the cause. `axes`: two."""
@@ -83,11 +87,9 @@ def which(source, axes=None):
         column(over_limit, AMPLITUDE, place, row["amplitude"], "left")
         column(over_limit, PROBABILITY, place, row["probability"], "right")
     over_limit.axvline(1, color=INK, linestyle=(0, (4, 2)), linewidth=0.7)
-    for place in axes:
-        place.axvline(0, color=INK, linewidth=0.5)
-        place.grid(False, axis="y")
-        place.tick_params(axis="y", length=0)
-        place.spines["left"].set_visible(False)
+    for panel in axes:
+        panel.axvline(0, color=INK, linewidth=0.5)
+        set_rows(panel)
     gain.set_xlabel(values["gain_label"])
     over_limit.set_xlabel(values["over_limit_label"])
     gain.set_yticks(range(len(rows)), [plain(row["words"]) for row in rows])
@@ -95,13 +97,20 @@ def which(source, axes=None):
     gain.set_ylim(len(rows) - 0.4, -0.6)
     gain.margins(x=0.1)
     heading = "group" if any(row["group"] for row in rows) else ""
-    for place, x, words, side in ((gain, GROUP, heading, "right"), (over_limit, AMPLITUDE, "amplitude", "left"),
+    for panel, x, words, side in ((gain, GROUP, heading, "right"), (over_limit, AMPLITUDE, "amplitude", "left"),
                                   (over_limit, PROBABILITY, "probability", "right")):
-        column(place, x, -1.1, words, side)
+        column(panel, x, -1.1, words, side)
     return axes
 
 
-def draw_gain(axes, place, row, colour, largest):
+def set_rows(axes: Any) -> None:
+    """Rows of a table have neither lines nor ticks."""
+    axes.grid(False, axis="y")
+    axes.tick_params(axis="y", length=0)
+    axes.spines["left"].set_visible(False)
+
+
+def draw_gain(axes: Any, place: int, row: Values, colour: str, largest: float) -> None:
     """Prints the number at the base of its bar, next to a bar that is too short, or next to a diamond."""
     gain, simulated = row["gain"], row["gain_simulated"]
     if gain is not None:
@@ -115,14 +124,14 @@ def draw_gain(axes, place, row, colour, largest):
         axes.plot(simulated, place, marker="D", markersize=3.5, markerfacecolor="none", color=INK, markeredgewidth=0.8)
 
 
-def column(axes, x, row, words, side):
+def column(axes: Any, x: float, row: float, words: str, side: str) -> None:
     """A text of a table next to the axes, `x` points to the right of their right edge, or of their left edge if negative."""
     axes.annotate(plain(words), (float(x > 0), row), (x, 0), xycoords=axes.get_yaxis_transform(), textcoords="offset points", ha=side,
                   va="center", fontsize=6.5)
 
 
 @styled
-def how_far(source, axes=None):
+def how_far(source: Source, axes: Any = None) -> Any:
     """Top force before and after the effect is added, and the remaining gap in held-out data with its 90 % interval;
     placebo: the best of many random effects. `axes`: two, or one if the experiment has no top force."""
     values = read(source, "how_far")
@@ -137,7 +146,7 @@ def how_far(source, axes=None):
     return axes
 
 
-def draw_forces(axes, values):
+def draw_forces(axes: Any, values: Values) -> None:
     if "fitted" in values:
         axes.axvspan(*values["fitted"], facecolor="#999999", alpha=0.18, linewidth=0)
     axes.plot(values["x"], values["before"], **before_look(values))
@@ -149,11 +158,11 @@ def draw_forces(axes, values):
     key(axes, force_entries(values), "upper left")
 
 
-def before_look(values):
+def before_look(values: Values) -> Values:
     return {"color": values["colour_before"], "linestyle": (0, (4, 2))}
 
 
-def force_entries(values):
+def force_entries(values: Values) -> list[Entry]:
     entries = [(line(**EXPERIMENT), "experiment"), (line(**before_look(values)), values["words_before"]),
                (line(color=values["colour_after"]), values["words_after"])]
     if "fitted" in values:
@@ -161,7 +170,7 @@ def force_entries(values):
     return entries
 
 
-def draw_bars(axes, values):
+def draw_bars(axes: Any, values: Values) -> None:
     for place, bar in enumerate(values["bars"]):
         left = bar["gap_left"]
         if left is None:
@@ -175,7 +184,5 @@ def draw_bars(axes, values):
     axes.set_yticks(range(len(values["bars"])), [plain(bar["words"]) for bar in values["bars"]])
     axes.set_ylim(len(values["bars"]) - 0.5, -0.5)
     axes.margins(x=0.17)
-    axes.grid(False, axis="y")
-    axes.tick_params(axis="y", length=0)
-    axes.spines["left"].set_visible(False)
+    set_rows(axes)
     axes.set_xlabel(values["gap_label"])

@@ -1,143 +1,100 @@
-"""The four figures of the paper, with or without a reference, and figures of programmes of plates and cells."""
+"""Draws the figures of runs that mcdem.report.run_figures defines: lines for simulations, points for the reference."""
+from collections.abc import Callable
+from typing import Any
+
 import matplotlib.patches
 import numpy as np
 
-from .style import GREY, key, keyed_axes, line, styled
-from .values import read
+from ..report.figure_values import DEFINITIONS, Drawing, Kind
+from ..report.run_figures import run_figures  # noqa: F401  defines them
+from .style import GREY, Entry, key, keyed_axes, line, styled
+from .values import Source, read
 
-SIMULATED = {"load": {"linestyle": "-"}, "unload": {"linestyle": (0, (4, 2))}}
-REFERENCE = {"load": {}, "unload": {"markerfacecolor": "white"}}
+Values = dict[str, Any]
+
+SIMULATED: dict[str, Values] = {"load": {"linestyle": "-"}, "unload": {"linestyle": (0, (4, 2))}}
+REFERENCE: dict[str, Values] = {"load": {}, "unload": {"markerfacecolor": "white"}}
 PHASES = {"load": "loading", "unload": "unloading"}
 
 
-@styled
-def top_force(source, axes=None):
-    """Force on the plate. Solid lines: loading, dashed: unloading; points: the reference, filled and open."""
-    values = read(source, "top_force")
-    values["series"].sort(key=lambda series: (  # order of the legend as at the ends of the curves
-        series["is_reference"], -max(max(curve["y"]) for curve in series["curves"])))
-    axes = draw_curves(values, axes, "upper left")
-    axes.set_ylim(bottom=0)
-    return axes
-
-
-@styled
-def force_distribution(source, axes=None):
-    """Density of contact forces at one level of compression, which the legend names; bands: one standard error over replicas."""
-    values = read(source, "force_distribution")
-    curves = [curve for series in values["series"] for curve in series["curves"]]
-    phase = PHASES[curves[0]["phase"]]
-    for curve in curves:
-        curve["phase"] = "load"  # all of one phase: solid lines, filled points
-    axes = draw_curves(values, axes, phases=())
-    axes.set_yscale("log")
-    axes.get_legend().set_title(f"at {values['displacement_mm']:.1f} mm, {phase}", prop={"size": axes.xaxis.label.get_size()})
-    return axes
-
-
-@styled
-def coordination(source, axes=None):
-    """Contacts per grain, without forces below tau if there is a reference. Lines and points as in `top_force`."""
-    return draw_curves(read(source, "coordination"), axes)
-
-
-@styled
-def scaling(source, axes=None):
-    """Top force against averages over the packing. Filled points: loading, open: unloading; lines through the origin are fitted to both."""
-    values = read(source, "scaling")
-    shown = [(line(color=series["colour"], marker=series["marker"], linestyle=""), words(series)) for series in values["series"]]
-    shown += [(line(color=GREY, marker="o", linestyle="", **REFERENCE[phase]), name) for phase, name in PHASES.items()]
-    axes = axes or keyed_axes(shown, "upper left")
-    for series in values["series"]:
-        for curve in series["curves"]:
-            draw_points(axes, series, curve, markersize=2.2)
-        if "slope" in series:
-            end = max(max(curve["x"]) for curve in series["curves"])
-            axes.plot([0, end], [0, series["slope"] * end], color=series["colour"], linewidth=0.7)
-    axes.set(xlim=(0, None), ylim=(0, None), xlabel=values["x_label"], ylabel=values["y_label"])
-    key(axes, shown, "upper left")
-    return axes
-
-
-def programme_figure(name, meaning, from_zero=True):
-    """One line per setting, in order of the scans, which are marked because paths may return to earlier points."""
+def figure_function(name: str) -> Callable[..., Any]:
+    """The function that draws the figure of this name of a folder or figures.json, into `axes` or new ones."""
     @styled
-    def draw(source, axes=None):
-        values = read(source, name)
-        is_right = all(x >= 0 for series in values["series"] for curve in series["curves"] for x in curve["x"])
-        return draw_curves(values, axes, "best", phases=(), from_zero=from_zero and is_right, marker="o", markersize=1.6)
+    def draw(source: Source, axes: Any = None) -> Any:
+        return draw_curves(read(source, name), DEFINITIONS[name].drawing, axes)
 
-    draw.__name__, draw.__doc__ = name, meaning
+    draw.__name__, draw.__qualname__, draw.__doc__ = name, name, DEFINITIONS[name].meaning
     return draw
 
 
-force_time = programme_figure(
-    "force_time", "Force on the plate against time, scan by scan of a programme; bands: one standard error over replicas.")
-displacement_time = programme_figure("displacement_time", "Displacement of the plate against time, scan by scan of a programme.")
-force_displacement = programme_figure("force_displacement", "Force on the plate against its displacement, scan by scan of a programme.")
-pressure_strain = programme_figure("pressure_strain", "Mean stress of a cell against its volume strain.")
-shear_stress_strain = programme_figure("shear_stress_strain", "Deviatoric stress q of a cell against its deviatoric strain.")
-stress_path = programme_figure("stress_path", "Deviatoric stress q against mean stress p, for cells that are distorted and for plates.")
-cell_coordination = programme_figure("cell_coordination", "Contacts per grain in a cell against its packing fraction.", from_zero=False)
-pressure_time = programme_figure("pressure_time", "Mean stress of a cell against time.")
-volume_time = programme_figure("volume_time", "Volume strain of a cell against time.")
-shear_stress_time = programme_figure("shear_stress_time", "Deviatoric stress of a cell against time.")
-shear_strain_time = programme_figure("shear_strain_time", "Deviatoric strain of a cell against time.")
-
-
-def draw_curves(values, axes, place=None, phases=("load", "unload"), from_zero=True, **lines):
-    """Lines with bands for simulations, points with error bars for the reference, and a legend (`place` as for `key`).
-
-    `lines`: style of the lines. Returns the axes, by default new ones.
-    """
-    shown = entries(values, phases)
-    axes = axes or keyed_axes(shown, place)
-    for series in values["series"]:
+def draw_curves(values: Values, drawing: Drawing, axes: Any = None) -> Any:
+    """Lines with bands or points with error bars, and a legend. Returns the axes, by default new ones."""
+    kind, everything = drawing.kind, values["series"]
+    if kind is Kind.phases and drawing.legend:  # order as at the ends of the curves
+        everything = sorted(everything, key=lambda series: (series["is_reference"], -max(max(curve["y"]) for curve in series["curves"])))
+    shown = entries(everything, kind)
+    axes = axes or keyed_axes(shown, drawing.legend)
+    for series in everything:
         for curve in series["curves"]:
-            if series["is_reference"]:
-                draw_points(axes, series, curve)
+            phase = curve["phase"] if kind in (Kind.phases, Kind.points) else "load"
+            if series["is_reference"] or kind is Kind.points:
+                draw_points(axes, series, curve, REFERENCE[phase], **({"markersize": 2.2} if kind is Kind.points else {}))
             else:
-                draw_line(axes, series, curve, **lines)
+                draw_line(axes, series, curve, SIMULATED[phase], **({"marker": "o", "markersize": 1.6} if kind is Kind.path else {}))
+        if "slope" in series:
+            end = max(max(curve["x"]) for curve in series["curves"])
+            axes.plot([0, end], [0, series["slope"] * end], color=series["colour"], linewidth=0.7)
     axes.set(xlabel=values["x_label"], ylabel=values["y_label"])
-    if from_zero:
-        axes.set_xlim(left=0)
-    key(axes, shown, place)
+    set_limits(axes, everything, drawing)
+    legend = key(axes, shown, drawing.legend)
+    if kind is Kind.level:
+        axes.set_yscale("log")
+        heading = f"at {values['displacement_mm']:.1f} mm, {PHASES[everything[0]['curves'][0]['phase']]}"
+        legend.set_title(heading, prop={"size": axes.xaxis.label.get_size()})
     return axes
 
 
-def draw_line(axes, series, curve, **look):
+def set_limits(axes: Any, everything: list[Values], drawing: Drawing) -> None:
+    """Zero is the end of axes that begin there, but for negative values of a programme, and for its forces and stresses."""
+    is_path = drawing.kind is Kind.path
+    if "x" in drawing.from_zero and not (is_path and any(x < 0 for series in everything for curve in series["curves"] for x in curve["x"])):
+        axes.set_xlim(left=0)
+    if "y" in drawing.from_zero and not is_path:
+        axes.set_ylim(bottom=0)
+
+
+def draw_line(axes: Any, series: Values, curve: Values, phase: Values, **look: Any) -> None:
     x, y, error = numbers(curve)
-    axes.plot(x, y, color=series["colour"], **SIMULATED[curve["phase"]], **look)
+    axes.plot(x, y, color=series["colour"], **phase, **look)
     if np.isfinite(error).any():
         low = np.where(y > 0, np.maximum(y - error, y / 3), y - error)  # keeps the band positive on logarithmic axes
         axes.fill_between(x, low, y + error, color=series["colour"], alpha=0.18, linewidth=0)
 
 
-def draw_points(axes, series, curve, **look):
+def draw_points(axes: Any, series: Values, curve: Values, phase: Values, **look: Any) -> None:
     x, y, error = numbers(curve)
     bars = error if np.isfinite(error).any() else None
     axes.errorbar(x, y, bars, color=series["colour"], marker=series["marker"], linestyle="", markeredgewidth=0.6,
-                  elinewidth=0.6, **{**REFERENCE[curve["phase"]], **look})
+                  elinewidth=0.6, **phase, **look)
 
 
-def numbers(curve):
+def numbers(curve: Values) -> list[Any]:
     """x, y and standard error (NaN if unknown)."""
     return [np.array(curve[quantity], float) for quantity in ("x", "y", "standard_error")]
 
 
-def words(series):
-    return ", ".join(filter(None, (series["words"], series["remark"])))
-
-
-def entries(values, phases):
+def entries(everything: list[Values], kind: Kind) -> list[Entry]:
     """Legend entries of the series, followed by those of lines, points and bands."""
-    series = values["series"]
-    shown = [(line(color=one["colour"], **({"marker": "o", "linestyle": ""} if one["is_reference"] else {"linewidth": 1.8})), words(one))
-             for one in series]
-    has_reference = any(one["is_reference"] for one in series)
-    for phase in phases:
-        points = {"load": " (points: full)", "unload": " (points: open)"}[phase] if has_reference else ""
-        shown.append((line(color=GREY, **SIMULATED[phase]), PHASES[phase] + points))
-    if any(one["replicas"] > 1 for one in series):
+    shown: list[Entry] = []
+    for series in everything:
+        is_points = series["is_reference"] or kind is Kind.points
+        look = {"marker": series["marker"], "linestyle": ""} if is_points else {"linewidth": 1.8}
+        shown.append((line(color=series["colour"], **look), ", ".join(filter(None, (series["words"], series["remark"])))))
+    if kind is Kind.points:
+        return shown + [(line(color=GREY, marker="o", linestyle="", **REFERENCE[phase]), words) for phase, words in PHASES.items()]
+    points = {"load": " (points: full)", "unload": " (points: open)"} if any(series["is_reference"] for series in everything) else {}
+    if kind is Kind.phases:
+        shown += [(line(color=GREY, **SIMULATED[phase]), words + points.get(phase, "")) for phase, words in PHASES.items()]
+    if any(series["replicas"] > 1 for series in everything):
         shown.append((matplotlib.patches.Patch(color=GREY, alpha=0.3, linewidth=0), "± standard error"))
     return shown

@@ -1,14 +1,17 @@
 """Reads figures.json, which the commands write (mcdem/report/figure_values.py)."""
 import json
 import pathlib
+from os import PathLike
+from typing import Any
 
 from ..files import read_whole
 from ..look import is_folder, is_there
+from ..report.figure_values import FORMAT
 
-FORMAT = 1
+Source = str | PathLike[str]
 
 
-def read(source, name=None):
+def read(source: Source, name: str | None = None) -> dict[str, Any]:
     """Values of the figure `name`; without a name, of all figures in the folder or file."""
     file = pathlib.Path(source)
     if is_folder(file):
@@ -23,4 +26,5 @@ def read(source, name=None):
         return values
     if name not in values:
         raise KeyError(f"{file}: has no figure {name}, but {', '.join(values)}")
-    return values[name]
+    found: dict[str, Any] = values[name]
+    return found

@@ -1,6 +1,7 @@
 """Charts of a diagnosis for pages. Colours "var(--ink)" are those of the page's present theme."""
 from typing import Any
 
+import numpy as np
 import plotly.graph_objects as go
 
 from ..diagnosis.diagnosis_types import Diagnosis
@@ -40,36 +41,24 @@ def _note(text: str, **place: Any) -> dict[str, Any]:
     return {"text": text, "showarrow": False, "font": {"size": 12}, **place}
 
 
-def _rows_axis(count: int, words: list[str], **axis: Any) -> dict[str, Any]:
-    return {"tickvals": list(range(count)), "ticktext": words, "showgrid": False, "ticks": "", **axis}
-
-
-def _grid_of(columns: list[Values]) -> tuple[list[float], dict[int, int]]:
-    """Edges of the columns of the trace, and the place of each column of the map: there is an empty one between the phases."""
-    edges = [columns[0]["x"] - 0.5]
-    place = {}
-    for number, column in enumerate(columns):
-        if column["x"] - 0.5 > edges[-1]:
-            edges.append(column["x"] - 0.5)
-        place[number] = len(edges) - 1
-        edges.append(column["x"] + 0.5)
-    return edges, place
+def _rows_axis(words: list[str], **axis: Any) -> dict[str, Any]:
+    return {"tickvals": list(range(len(words))), "ticktext": words, "showgrid": False, "ticks": "", **axis}
 
 
 def _cells_trace(values: Values, panel: Values, axis: str) -> go.Heatmap:
-    """A panel's cells, `axis` "" or "2"."""
-    edges, place = _grid_of(values["columns"])
-    scores: list[list[float | None]] = [[None] * (len(edges) - 1) for _ in values["observables"]]
-    words: list[list[str | None]] = [[None] * (len(edges) - 1) for _ in values["observables"]]
+    """A panel's cells, `axis` "" or "2". The trace has a column more for every gap between phases."""
+    columns = values["columns"]
+    edges = sorted({round(column["x"] + side, 6) for column in columns for side in (-0.5, 0.5)})
+    scores, words = (np.full((len(values["observables"]), len(edges) - 1), None) for _ in range(2))
     for cell in panel["cells"]:
-        row, column, z = cell["row"], values["columns"][cell["column"]], cell["z_score"]
+        column, z = columns[cell["column"]], cell["z_score"]
+        place = cell["row"], edges.index(round(column["x"] - 0.5, 6))
         when = "both phases" if column["phase"] == "whole cycle" else column["phase"]
-        scores[row][place[cell["column"]]] = z
-        words[row][place[cell["column"]]] = plot_text(
-            f"{values['observables'][row]}, {when} at {column['displacement_mm']:.2f} mm") + f"<br>{z:.2f} sigma"
+        where = f"{values['observables'][cell['row']]}, {when} at {column['displacement_mm']:.2f} mm"
+        scores[place], words[place] = z, f"{plot_text(where)}<br>{z:.2f} sigma"
     return go.Heatmap(
-        name=panel["words"], x=edges, y0=0, dy=1, z=scores, text=words, hoverinfo="text", xaxis=f"x{axis}", zmin=-values["colour_range"],
-        zmax=values["colour_range"], xgap=1, ygap=1, colorscale=GAP_COLOURS, showscale=not axis,
+        name=panel["words"], x=edges, y0=0, dy=1, z=scores.tolist(), text=words.tolist(), hoverinfo="text", xaxis=f"x{axis}",
+        zmin=-values["colour_range"], zmax=values["colour_range"], xgap=1, ygap=1, colorscale=GAP_COLOURS, showscale=not axis,
         colorbar={"thickness": 12, "lenmode": "pixels", "len": 360, "y": 1, "yanchor": "top", "outlinewidth": 0,
                   "title": {"text": values["colour_label"], "side": "right", "font": {"size": 12}}})
 
@@ -81,11 +70,11 @@ def _frame(x: float, row: int, axis: str) -> dict[str, Any]:
 
 def _numbers_trace(values: Values, framed: list[Values], axis: str) -> go.Scatter:
     """Numbers in the framed cells."""
-    strong = [abs(cell["z_score"]) > 0.6 * values["colour_range"] for cell in framed]
+    scores = [cell["z_score"] for cell in framed]
     return go.Scatter(
         mode="text", x=[values["columns"][cell["column"]]["x"] for cell in framed], y=[cell["row"] for cell in framed],
-        text=[f"{cell['z_score']:.{1 if abs(cell['z_score']) < 10 else 0}f}" for cell in framed], xaxis=f"x{axis}",
-        textfont={"size": 10, "color": ["var(--on-strong)" if one else "#111111" for one in strong]}, hoverinfo="skip", showlegend=False)
+        text=[f"{z:.{1 if abs(z) < 10 else 0}f}" for z in scores], xaxis=f"x{axis}", hoverinfo="skip", showlegend=False,
+        textfont={"size": 10, "color": ["var(--on-strong)" if abs(z) > 0.6 * values["colour_range"] else "#111111" for z in scores]})
 
 
 def _columns_axis(values: Values, domain: list[float]) -> dict[str, Any]:
@@ -109,7 +98,7 @@ def _headings(values: Values, heading: str, axis: str) -> list[dict[str, Any]]:
 
 
 def _where(values: Values, threshold: float) -> Chart:
-    rows, traces, shapes, notes = len(values["observables"]), [], [], []
+    observables, traces, shapes, notes = [plot_text(words) for words in values["observables"]], [], [], []
     for axis, panel in zip(("", "2"), values["panels"]):
         framed = [cell for cell in panel["cells"] if cell["stands_out"]]
         traces.append(_cells_trace(values, panel, axis))
@@ -119,13 +108,12 @@ def _where(values: Values, threshold: float) -> Chart:
         notes += _headings(values, panel["words"], axis)
     layout = {"margin": {"l": 60, "r": 16, "t": 64, "b": 56}, "shapes": shapes, "annotations": notes,
               "xaxis": _columns_axis(values, [0, 0.485]), "xaxis2": _columns_axis(values, [0.515, 1]),
-              "yaxis": _rows_axis(rows, [plot_text(words) for words in values["observables"]], range=[rows - 0.5, -0.5], showline=False,
-                                  fixedrange=True)}
+              "yaxis": _rows_axis(observables, range=[len(observables) - 0.5, -0.5], showline=False, fixedrange=True)}
     caption = ("Orange: the experiment lies above the simulation, blue: below. Time runs from left to right. Left: parameters as stated; "
                "right: after they were fitted within their uncertainty.")
     if threshold > 0:
         caption += f" Framed: beyond {threshold:.1f} sigma, exceeded anywhere by noise in 1 % of the replicates."
-    return Chart("where", "Where simulation and experiment differ", caption, go.Figure(traces, layout), height=120 + 22 * rows,
+    return Chart("where", "Where simulation and experiment differ", caption, go.Figure(traces, layout), height=120 + 22 * len(observables),
                  min_width=300 + 60 * len(values["columns"]))
 
 
@@ -180,7 +168,7 @@ def _which(values: Values, explained: list[str]) -> Chart:
         "annotations": column("group", -0.005, "right") + column("amplitude", 0.61, "left") + column("probability", 1, "right"),
         "xaxis": _small_titled(values["gain_label"], domain=[0, 0.3], showline=False),
         "xaxis2": _small_titled("amplitude / limit", domain=[0.37, 0.58], showline=False),
-        "yaxis": _rows_axis(len(rows), [plot_text(row["words"]) + " " * 8 for row in rows], range=[len(rows) - 0.4, -0.6],
+        "yaxis": _rows_axis([plot_text(row["words"]) + " " * 8 for row in rows], range=[len(rows) - 0.4, -0.6],
                             showline=False)}
     return Chart(
         "which", "Candidate effects",
@@ -220,6 +208,6 @@ def _gap_left(values: Values, held_out: str) -> Chart:
                  "arrayminus": [None if low is None else value - low for value, (low, _) in zip(left, ends)]},
         hovertemplate="%{x:.1f} %<extra></extra>")
     layout = {"bargap": 0.35, "xaxis": from_zero(values["gap_label"]),
-              "yaxis": _rows_axis(len(bars), [f"{bar['words']}: {bar['gap_left']:.0f} %" for bar in bars], range=[len(bars) - 0.4, -0.6])}
+              "yaxis": _rows_axis([f"{bar['words']}: {bar['gap_left']:.0f} %" for bar in bars], range=[len(bars) - 0.4, -0.6])}
     return Chart("gap_left", "Gap that is left", f"In held-out data ({held_out}), with its 90 % interval; placebo: the best of twenty "
                  "random effects.", go.Figure(trace, layout), height=110 + 36 * len(bars))

@@ -5,14 +5,13 @@ from math import isfinite
 
 from ..diagnosis.diagnosis_types import Diagnosis, WhereEntry
 from .diagnosis_charts import diagnosis_charts
-from .diagnosis_text import how_far_line, verdict_lines
-from .diagnosis_where import strongest_first
-from .diagnosis_words import (amount, amount_with_error, displacement_words, listed, listed_names, missing_name, next_words, number,
-                              p_number, p_words, percent, phase_words, words_of)
+from .diagnosis_text import how_far_line, strongest_first, verdict_lines
+from .diagnosis_words import (amount, amount_with_error, displacement_words, listed, listed_names, missing_name, next_words, p_number,
+                              p_words, percent, phase_words, words_of)
 from .effect_names import EFFECTS, OBSERVABLES
-from .labels import NO_NUMBER
+from .labels import NO_NUMBER, number
 from .page import Page
-from .text_table import Column, TextTable
+from .text_table import TextTable, table_of
 from .verdict import verdict_words
 
 MOST_ROWS = 20  # of "where"
@@ -76,36 +75,24 @@ def _add_gap(page: Page, diagnosis: Diagnosis) -> None:
 
 
 def _add_rest(page: Page, diagnosis: Diagnosis) -> None:
-    def add_table(heading: str, table: TextTable) -> None:
-        if table.rows:
+    content: dict[str, TextTable | Sequence[str]] = {
+        "What to do next": [next_words(step) for step in diagnosis.next], "Uncertain parameters": _nuisances(diagnosis),
+        "Bins without a value": _missing_bins(diagnosis), "What was not measured": diagnosis.not_measured,
+        "What cannot be tested": diagnosis.not_testable, "What the effects are": _effects(diagnosis),
+        "What the observables are": _observables(diagnosis), "Provenance": _provenance(diagnosis)}
+    for heading, one in content.items():
+        if isinstance(one, TextTable) and one.rows:
             page.section(heading)
-            page.table("", table)
-
-    def add_list(heading: str, texts: Sequence[str]) -> None:
-        if texts:
+            page.table("", one)
+        elif one and not isinstance(one, TextTable):
             page.section(heading)
-            page.list(texts)
-
-    add_list("What to do next", [next_words(step) for step in diagnosis.next])
-    add_table("Uncertain parameters", _nuisances(diagnosis))
-    add_table("Bins without a value", _missing_bins(diagnosis))
-    add_list("What was not measured", diagnosis.not_measured)
-    add_list("What cannot be tested", diagnosis.not_testable)
-    add_table("What the effects are", _effects(diagnosis))
-    add_table("What the observables are", _observables(diagnosis))
-    add_table("Provenance", _provenance(diagnosis))
-
-
-def _table(titles: Sequence[str], rows: Iterable[list[str]], notes: Iterable[str] = ()) -> TextTable:
-    """Columns are aligned to the left if their title begins with "<", which is not shown."""
-    columns = [Column(title.removeprefix("<"), "left" if title.startswith("<") else "right") for title in titles]
-    return TextTable(columns, list(rows), list(notes))
+            page.list(one)
 
 
 def _packings(diagnosis: Diagnosis) -> TextTable:
     """Each of several packings separately; no rows for a single one."""
     leader = diagnosis.causes[:1]
-    return _table(
+    return table_of(
         ["<packing", "p of its gap", *(f"{words_of(cause.effect)} from this packing" for cause in leader),
          "p of its difference from the others"],
         ([packing.experiment, p_number(packing.gap_p),
@@ -123,7 +110,7 @@ def _where(diagnosis: Diagnosis) -> TextTable:
     """Significant parts of the data, strongest first."""
     entries = strongest_first(diagnosis.where)
     left_out = len(entries) - MOST_ROWS
-    return _table(
+    return table_of(
         ["<observable", "<part of it", "<phase", "plate displacement", "sigma", "after recalibration"],
         ([words_of(entry.observable), _part_words(entry), phase_words(entry.phase), displacement_words(entry.displacement_mm),
           number(entry.z_score, ".1f"), number(entry.z_score_refitted, ".1f")] for entry in entries[:MOST_ROWS]),
@@ -137,7 +124,7 @@ def _others(group: Iterable[str], effect: str) -> str:
 
 
 def _causes(diagnosis: Diagnosis) -> TextTable:
-    return _table(
+    return table_of(
         ["<effect", "amplitude", "probability", "part of chi-square", "gain in log likelihood", "gain in full simulations",
          "<indistinguishable from"],
         ([words_of(cause.effect), amount_with_error(cause.amplitude, cause.amplitude_error, cause.unit), percent(cause.confidence),
@@ -147,7 +134,7 @@ def _causes(diagnosis: Diagnosis) -> TextTable:
 
 
 def _detection_limits(diagnosis: Diagnosis) -> TextTable:
-    return _table(
+    return table_of(
         ["<effect", "smallest detectable amplitude", "absorbed by calibration", "<indistinguishable at twice that amplitude from"],
         ([words_of(limit.effect), amount(limit.minimum_amplitude, limit.unit) if limit.is_finite else "not detectable",
           percent(limit.absorbed_by_calibration), _others(limit.group, limit.effect)] for limit in diagnosis.detection_limits))
@@ -157,10 +144,10 @@ def _gap_reduction(diagnosis: Diagnosis) -> TextTable:
     """Gap and metrics before and after; empty without a gap reduction."""
     shrink = diagnosis.shrink
     if not shrink:
-        return _table([], [])
+        return table_of([], [])
     changes = [("gap, noise subtracted", (shrink.before, shrink.after), "0")]
     changes += [("errf [N]" if name == "errf" else name, values, "1" if name == "Rtop" else "0") for name, values in shrink.metrics.items()]
-    return _table(
+    return table_of(
         ["<", "before", "after", "perfect"], ([words, number(before), number(after), best] for words, (before, after), best in changes),
         ["gap: sum of squared differences in held-out data, in standard deviations of the noise",
          *(f"{name}: {MEANINGS[name]}" for name in shrink.metrics if name in MEANINGS)])
@@ -171,7 +158,7 @@ def _nuisances(diagnosis: Diagnosis) -> TextTable:
     fits = [(fit, first, number(fit.sigmas, "+.1f")) for fit in diagnosis.check_first]
     fits += [(fit, "more than 2.5 times its uncertainty, without an effect" if fit.at_bound else "",
               number(fit.sigmas, "+.1f") if fit.prior > 0 else NO_NUMBER) for fit in diagnosis.nuisances]
-    return _table(
+    return table_of(
         ["<parameter", "shift from the scene", "uncertainty", "shift / uncertainty", "<remark"],
         ([words_of(fit.name), amount_with_error(fit.shift, fit.error, fit.unit, signed=True), f"± {amount(fit.prior, fit.unit)}", sigmas,
           remark] for fit, remark, sigmas in fits),
@@ -180,7 +167,7 @@ def _nuisances(diagnosis: Diagnosis) -> TextTable:
 
 def _missing_bins(diagnosis: Diagnosis) -> TextTable:
     """What lacks values that the experiment has."""
-    return _table(
+    return table_of(
         ["<what", "bins without a value", "of", "part", "<consequence"],
         ([missing_name(missing), str(missing.bins), str(missing.of_bins), percent(missing.share),
           "nothing is compared there" if missing.for_all else "their gap counts as not explained by it"]
@@ -189,7 +176,7 @@ def _missing_bins(diagnosis: Diagnosis) -> TextTable:
 
 def _effects(diagnosis: Diagnosis) -> TextTable:
     """Meanings of the candidates' amplitudes."""
-    return _table(["<effect", "<amplitude", "<source"],
+    return table_of(["<effect", "<amplitude", "<source"],
                   ([words_of(cause.effect), EFFECTS[cause.effect].amplitude, EFFECTS[cause.effect].source] for cause in diagnosis.ranking
                    if cause.effect in EFFECTS))
 
@@ -197,9 +184,9 @@ def _effects(diagnosis: Diagnosis) -> TextTable:
 def _observables(diagnosis: Diagnosis) -> TextTable:
     """Meanings of the rows of the figure."""
     shown = {cell.observable for cell in diagnosis.cells}
-    return _table(["<observable", "<what it is"], ([words_of(name), meaning] for name, meaning in OBSERVABLES.items() if name in shown))
+    return table_of(["<observable", "<what it is"], ([words_of(name), meaning] for name, meaning in OBSERVABLES.items() if name in shown))
 
 
 def _provenance(diagnosis: Diagnosis) -> TextTable:
-    return _table(["<what", "<"], [*([words_of(key), value] for key, value in sorted(diagnosis.provenance.items())),
+    return table_of(["<what", "<"], [*([words_of(key), value] for key, value in sorted(diagnosis.provenance.items())),
                                    ["time taken", f"{diagnosis.seconds:.0f} s" if isfinite(diagnosis.seconds) else NO_NUMBER]])

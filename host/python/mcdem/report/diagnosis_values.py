@@ -1,10 +1,10 @@
 """Values of the figures of a diagnosis, as figures.json has them: where, which and how_far. None for unknown numbers."""
-from dataclasses import dataclass
 from math import ceil, isfinite
 from typing import Any
 
 from ..diagnosis.diagnosis_types import Cause, Diagnosis, GapReduction, WhereCell
-from .diagnosis_where import SAME_DISPLACEMENT_MM, stands_out
+from ..json_text import finite
+from .diagnosis_text import SAME_DISPLACEMENT_MM, stands_out
 from .diagnosis_words import amount_with_error, percent, words_of
 from .verdict import VerdictWords, verdict_words
 
@@ -29,52 +29,35 @@ def diagnosis_figure_values(diagnosis: Diagnosis) -> Values:
     return values
 
 
-def _or_none(value: float | None) -> float | None:
-    return None if value is None or not isfinite(value) else value
-
-
-@dataclass(frozen=True)
-class Column:
-    """Column of the figure "where"; its rows are observables."""
-    phase: str
-    displacement_mm: float
-    x: float  # of the centre; columns have width 1, phases are separated by PHASE_GAP
-
-    def holds(self, cell: WhereCell) -> bool:
-        return self.phase == cell.phase and abs(self.displacement_mm - cell.displacement_mm) < SAME_DISPLACEMENT_MM
-
-
-def _in_time(cell: WhereCell) -> tuple[int, str, float]:
+def _in_time(place: tuple[str, float]) -> tuple[int, str, float]:
     """Order of the measurement: loading, then unloading."""
-    order = {"load": 0, "unload": 1}.get(cell.phase, 2)
-    return order, cell.phase, -cell.displacement_mm if cell.phase == "unload" else cell.displacement_mm
+    phase, displacement_mm = place
+    return {"load": 0, "unload": 1}.get(phase, 2), phase, -displacement_mm if phase == "unload" else displacement_mm
 
 
-def _columns_of(cells: list[WhereCell]) -> tuple[list[Column], float]:
-    """The columns in the order of the measurement, and their total width."""
-    columns: list[Column] = []
-    width = 0.
-    for cell in sorted(cells, key=_in_time):
-        if columns and columns[-1].holds(cell):
-            continue
-        if columns and columns[-1].phase != cell.phase:
-            width += PHASE_GAP
-        columns.append(Column(cell.phase, cell.displacement_mm, width + 0.5))
-        width += 1
-    return columns, width
+def _columns_of(cells: list[WhereCell]) -> tuple[list[Values], float, dict[tuple[str, float], int]]:
+    """The columns of the figure "where" in the order of the measurement, with their centres `x`; their total width, a column being 1
+    wide; and the column of each phase and displacement."""
+    columns: list[Values] = []
+    width, place, last = 0., {}, ("", -SAME_DISPLACEMENT_MM)
+    for phase, displacement in sorted({(cell.phase, cell.displacement_mm) for cell in cells}, key=_in_time):
+        if not columns or phase != last[0] or abs(displacement - last[1]) >= SAME_DISPLACEMENT_MM:
+            width += PHASE_GAP * (bool(columns) and phase != last[0])
+            columns.append({"phase": phase + "ing" if phase else "whole cycle", "displacement_mm": displacement, "x": width + 0.5})
+            width, last = width + 1, (phase, displacement)
+        place[phase, displacement] = len(columns) - 1
+    return columns, width, place
 
 
 def _where(diagnosis: Diagnosis) -> Values:
     cells = [cell for cell in diagnosis.cells if isfinite(cell.displacement_mm)]
     observables = list(dict.fromkeys(cell.observable for cell in cells))
-    columns, width = _columns_of(cells)
-    row = {observable: k for k, observable in enumerate(observables)}
-    place = {(cell.phase, cell.displacement_mm): next(k for k, column in enumerate(columns) if column.holds(cell)) for cell in cells}
+    columns, width, place = _columns_of(cells)
 
     def panel(words: str, refitted: bool) -> Values:
         scores = [(cell, cell.z_score_refitted if refitted else cell.z_score) for cell in cells]
         return {"words": words, "cells": [
-            {"row": row[cell.observable], "column": place[cell.phase, cell.displacement_mm], "z_score": z,
+            {"row": observables.index(cell.observable), "column": place[cell.phase, cell.displacement_mm], "z_score": z,
              "stands_out": stands_out(diagnosis, cell, refitted)} for cell, z in scores if isfinite(z)]}
 
     largest = max((abs(cell.z_score) for cell in cells if isfinite(cell.z_score)), default=0)
@@ -82,8 +65,7 @@ def _where(diagnosis: Diagnosis) -> Values:
             # Outliers must not hide all others, and noise must not look like a gap.
             "colour_range": min(max(float(ceil(largest)), 6.), 8.), "width": width,
             "observables": [words_of(observable) for observable in observables],
-            "columns": [{"phase": column.phase + "ing" if column.phase else "whole cycle", "displacement_mm": column.displacement_mm,
-                         "x": column.x} for column in columns],
+            "columns": columns,
             "panels": [panel("as stated", False), panel("after recalibration", True)]}
 
 
@@ -102,13 +84,13 @@ def _which(diagnosis: Diagnosis) -> Values:
     rows = []
     for cause, letters in zip(diagnosis.ranking, group_letters(diagnosis.ranking)):
         rows.append({"effect": cause.effect, "words": words_of(cause.effect), "is_named": cause.effect in named, "group": letters,
-                     "gain": _or_none(cause.score), "gain_simulated": _or_none(cause.confirmed_score),
+                     "gain": finite(cause.score), "gain_simulated": finite(cause.confirmed_score),
                      "amplitude": amount_with_error(cause.amplitude, cause.amplitude_error, cause.unit),
                      "probability": percent(cause.confidence)})
         limit = limits.get(cause.effect, 0)
         if limit > 0 and isfinite(limit):
-            rows[-1] |= {"over_limit": _or_none(cause.amplitude / limit),
-                         "half_interval": _or_none(SIGMAS_90 * cause.amplitude_error / limit)}
+            rows[-1] |= {"over_limit": finite(cause.amplitude / limit),
+                         "half_interval": finite(SIGMAS_90 * cause.amplitude_error / limit)}
     return {"gain_label": "gain in log likelihood", "over_limit_label": "fitted amplitude / detection limit", "colour_named": NAMED,
             "colour_other": OTHER, "rows": rows}
 
@@ -130,7 +112,7 @@ def _how_far(shrink: GapReduction, words: VerdictWords) -> Values:
     bars: list[Values] = []
 
     def add(what: str, colour: str, reduction: float) -> None:
-        bars.append({"words": what, "colour": colour, "gap_left": _or_none((1 - reduction) * 100)})
+        bars.append({"words": what, "colour": colour, "gap_left": finite((1 - reduction) * 100)})
 
     add("before", BEFORE, 0)
     add("after" if shrink.confirmed is None else "after, predicted", AFTER, shrink.fraction)

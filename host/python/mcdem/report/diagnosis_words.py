@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from ..diagnosis.diagnosis_types import Cause, MissingBins, NextStep, NuisanceFit, Pair, Refinement, WhereEntry
 from .effect_names import EFFECTS
-from .labels import NO_NUMBER, one_line
+from .labels import NO_NUMBER, number, one_line
 
 # Names that are not of effects.
 SPECIAL_WORDS = {"strain_offset": "zero of the displacement", "non_affine": "non-affine displacement", "modulus": "modulus of the grains"}
@@ -67,16 +67,10 @@ def _decimals_for(error: float) -> int:
     return min(max(1 - math.floor(math.log10(error)), 0), 12)
 
 
-def number(value: float, form: str = ".3g") -> str:
-    return f"{value:{form}}" if math.isfinite(value) else NO_NUMBER
-
-
 def amount(value: float, unit: str) -> str:
     """"0.421 mJ/m²": three digits, in a convenient unit. "–" if it is not finite."""
-    if not math.isfinite(value):
-        return NO_NUMBER
     factor, shown = _shown_unit(unit)
-    return f"{value * factor:.3g}{shown}"
+    return f"{value * factor:.3g}{shown}" if math.isfinite(value) else NO_NUMBER
 
 
 def amount_with_error(value: float, error: float, unit: str, signed: bool = False) -> str:

@@ -54,15 +54,13 @@ def draw_figures(folder: Folder, values: Mapping[str, Any]) -> list[pathlib.Path
 def draw_runs(folder: Folder, settings: "Sequence[Setting]", reference: "Setting | None" = None,
               options: "FigureOptions | None" = None) -> list[pathlib.Path]:
     """Draws runs with a reference, and says which figures are not available. Creates the folder. Returns the PNG files."""
-    from .figure_data import FigureOptions, figure_data
-    from .figure_values import figure_values
+    from .figure_data import FigureOptions
     from .run_figures import run_figures
     make_folder(folder)
-    options = options or FigureOptions()
-    prepared = run_figures(figure_data(settings, reference, options), options)
+    prepared = run_figures(settings, reference, options or FigureOptions())
     for missing in prepared.missing:
         say(f"no figure of {missing}")
-    return draw_figures(folder, figure_values(prepared.figures))
+    return draw_figures(folder, {figure.name: figure.values() for figure in prepared.figures})
 
 
 def draw_if_possible(draw: Callable[[], list[pathlib.Path]]) -> list[pathlib.Path]:

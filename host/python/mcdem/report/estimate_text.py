@@ -9,11 +9,6 @@ from .labels import NO_NUMBER, three_digits
 TOO_LARGE_RATE_ERROR = 0.02
 
 
-def number(value: float, decimals: int) -> str:
-    """With so many decimals; a dash if it is unknown."""
-    return f"{value:.{decimals}f}" if math.isfinite(value) else NO_NUMBER
-
-
 def with_error(estimate: Estimate, decimals: int, unit: float = 1.0) -> str:
     """ "0.430 ± 0.012"; without the error if it is unknown, a dash without a value.
 
@@ -28,7 +23,7 @@ def with_error(estimate: Estimate, decimals: int, unit: float = 1.0) -> str:
         return f"{value:.2e}" + (f" ± {error:.1e}" if has_error else "")
     if size > 0:
         decimals = max(decimals, 1 - math.floor(math.log10(size)))
-    return number(value, decimals) + (f" ± {number(error, decimals)}" if has_error else "")
+    return f"{value:.{decimals}f}" + (f" ± {error:.{decimals}f}" if has_error else "")
 
 
 def rate_note(cell: bool, rate_error: float) -> str:

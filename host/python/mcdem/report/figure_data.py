@@ -1,14 +1,12 @@
-"""What the figures of runs are made of: settings and a reference with their levels and comparisons."""
+"""What the figures of runs are made of: settings and a reference with their levels, scans and comparisons."""
 from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
+from functools import cached_property
 
 from ..observe.compare import Comparison, compare
 from ..observe.levels import Levels, group_levels
-from ..observe.programmes import follows_programme
+from ..observe.programmes import MeanScan, are_cells, follows_programme, mean_scans
 from ..observe.replicas import Setting
-from .figure_values import Curve, FigureSeries
 from .labels import SeriesStyle, reference_style, shortened, styles_of, words_for
 
 KEY_CHARACTERS = 44  # longer labels would leave no space for the curves
@@ -29,7 +27,7 @@ class Series:
     words: str  # its name in the legend
     style: SeriesStyle
     setting: Setting
-    levels: Levels
+    levels: Levels  # empty for programmes
     comparison: Comparison | None = None  # with the reference
     is_reference: bool = False
 
@@ -37,23 +35,31 @@ class Series:
     def is_programme(self) -> bool:
         return follows_programme(self.setting.replicas)
 
-    def shown(self, remark: str, curves: Sequence[Curve], slope: float = np.nan) -> FigureSeries:
-        return FigureSeries(self.setting, self.words, self.style, self.is_reference, remark, tuple(curves), slope)
+    @cached_property
+    def scans(self) -> list[MeanScan]:
+        return mean_scans(self.setting.replicas)
 
 
 @dataclass(frozen=True)
 class FigureData:
-    """What the figures of runs are made of."""
+    """The settings that have scans after their discarded cycles."""
     simulated: tuple[Series, ...]
-    reference: Series | None = None
+    reference: Series | None
+    options: FigureOptions
 
     @property
-    def everyone(self) -> tuple[Series, ...]:
-        return (*self.simulated, self.reference) if self.reference else self.simulated
+    def strokes(self) -> list[Series]:
+        """The series with levels, the reference last."""
+        everyone = (*self.simulated, self.reference) if self.reference else self.simulated
+        return [series for series in everyone if not series.is_programme]
+
+    def programmes(self, cells: bool) -> list[Series]:
+        """Those of cells, or those of plates."""
+        return [series for series in self.simulated if series.is_programme and are_cells(series.setting.replicas) == cells]
 
 
 def figure_data(settings: Sequence[Setting], reference: Setting | None, options: FigureOptions) -> FigureData:
-    """The settings that have scans after their discarded cycles."""
+    """Groups levels, and compares with the reference."""
     simulated = []
     for setting, style in zip(settings, styles_of(settings), strict=True):
         is_programme = follows_programme(setting.replicas)
@@ -62,7 +68,7 @@ def figure_data(settings: Sequence[Setting], reference: Setting | None, options:
             simulated.append(Series(_key_words(setting), style, setting, levels, _comparison_of(setting, reference, options)))
     over = Series(_key_words(reference), reference_style(), reference, group_levels(reference.replicas), is_reference=True) if reference \
         else None
-    return FigureData(tuple(simulated), over)
+    return FigureData(tuple(simulated), over, options)
 
 
 def _key_words(setting: Setting) -> str:

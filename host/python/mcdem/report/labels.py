@@ -37,6 +37,11 @@ def shortened(text: str, most: int) -> str:
     return text if len(text) <= most else text[:most - 1] + "…"
 
 
+def number(value: float, form: str = ".3g") -> str:
+    """The number in this format; a dash if it is not finite."""
+    return f"{value:{form}}" if math.isfinite(value) else NO_NUMBER
+
+
 def three_digits(value: float) -> str:
     """Three significant digits, without an exponent from 1e-4 to a million: "0.0123", "1000" for 999.9."""
     if not 99.95 <= abs(value) < 1e6:
@@ -98,4 +103,4 @@ def _ramp_colour(place: float) -> str:
     at = place * (len(RAMP) - 1)
     low = min(int(at), len(RAMP) - 2)
     mixed = (math.floor(a + (at - low) * (b - a) + 0.5) for a, b in zip(RAMP[low], RAMP[low + 1], strict=True))
-    return "#" + "".join(f"{part:02x}" for part in mixed)
+    return "#" + bytes(mixed).hex()

@@ -34,24 +34,17 @@ def sphere_number(grains: int) -> int:
 def sphere_mesh(times: int) -> dict[str, Any]:
     """The unit sphere as triangles: an icosahedron whose triangles are divided into four, `times` times."""
     t = (1 + 5**0.5) / 2
-    points = [np.array(point, float) for point in (
-        (-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t), (0, 1, -t), (t, 0, -1), (t, 0, 1), (-t, 0, -1),
-        (-t, 0, 1))]
-    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6), (7, 1, 8),
-             (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    points = np.array([(-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t), (0, 1, -t), (t, 0, -1), (t, 0, 1),
+                       (-t, 0, -1), (-t, 0, 1)])
+    faces = np.array([(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6), (7, 1, 8),
+                      (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)])
     for _ in range(times):
-        middles: dict[frozenset[int], int] = {}
-
-        def middle(a: int, b: int, middles: dict[frozenset[int], int] = middles) -> int:
-            edge = frozenset((a, b))
-            if edge not in middles:
-                middles[edge] = len(points)
-                points.append((points[a] + points[b]) / 2)
-            return middles[edge]
-
-        divided = [(a, b, c, middle(a, b), middle(b, c), middle(c, a)) for a, b, c in faces]
-        faces = [part for a, b, c, ab, bc, ca in divided for part in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))]
-    return {"points": [np.round(point / np.linalg.norm(point), 4).tolist() for point in points], "faces": faces}
+        sides = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1)).reshape(-1, 2)
+        edges, edge_of_side = np.unique(sides, axis=0, return_inverse=True)
+        (a, b, c), (ab, bc, ca) = faces.T, len(points) + edge_of_side.reshape(-1, 3).T
+        faces = np.concatenate([np.column_stack(corners) for corners in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))])
+        points = np.concatenate([points, points[edges].mean(axis=1)])
+    return {"points": np.round(points / np.linalg.norm(points, axis=1, keepdims=True), 4).tolist(), "faces": faces.tolist()}
 
 
 def walls_of(box: Box) -> list[dict[str, Any]]:

@@ -4,6 +4,7 @@ import gzip
 import hashlib
 import json
 import pathlib
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -53,9 +54,8 @@ def dressed(layout: Mapping[str, Any]) -> dict[str, Any]:
 
 def json_for_page(content: Any) -> str:
     """JSON in which nothing can end the enclosing element; null for numbers that are not finite."""
-    text = json.dumps(json.loads(json.dumps(content, cls=PlotlyJSONEncoder), parse_constant=lambda _: None),
-                      ensure_ascii=False, separators=(",", ":"))
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+    text = json.dumps(json.loads(json.dumps(content, cls=PlotlyJSONEncoder)), ensure_ascii=False, separators=(",", ":"))
+    return re.sub("[<>&]", lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
 def plotting_library() -> str:
@@ -95,10 +95,9 @@ class Page:
             return
         if heading:
             self.subheading(heading)
-        left = [column.align == "left" for column in table.columns]
-        lines = [[(one_line(cell), is_left) for cell, is_left in zip(row, left, strict=True)]
-                 for row in ([column.title for column in table.columns], *table.rows)]
-        self._add("table", head=lines[0], rows=lines[1:], notes=[one_line(note) for note in table.notes])
+        head, *rows = ([(one_line(cell), column.align == "left") for cell, column in zip(row, table.columns, strict=True)]
+                       for row in ([column.title for column in table.columns], *table.rows))
+        self._add("table", head=head, rows=rows, notes=[one_line(note) for note in table.notes])
 
     def list(self, texts: Sequence[str]) -> None:
         if texts:

@@ -6,12 +6,14 @@ from typing import Any
 from ..diagnosis.diagnosis_types import Diagnosis
 from ..errors import InputError
 from ..files import read_whole
+from ..json_text import json_text
 from ..outputs import DIAGNOSIS, replace_own
 from ..program import message_of, say
 from .diagnosis import diagnosis_of
-from .diagnosis_text import diagnosis_text, verdict_sentence
+from .diagnosis_text import diagnosis_text
 from .diagnosis_values import diagnosis_figure_values
 from .draw import draw_figures, draw_if_possible
+from .verdict import verdict_words
 
 FILE = "diagnosis.json"
 
@@ -64,6 +66,6 @@ def _with_sentence(file: str, document: dict[str, Any], diagnosis: Diagnosis) ->
     for key, value in document.items():  # at its documented place
         written[key] = value
         if key == "seconds":
-            written["sentence"] = verdict_sentence(diagnosis)
-    replace_own(file, DIAGNOSIS, (json.dumps(written, indent=2, ensure_ascii=False) + "\n").encode())
+            written["sentence"] = verdict_words(diagnosis).sentence
+    replace_own(file, DIAGNOSIS, json_text(written).encode())
     return written

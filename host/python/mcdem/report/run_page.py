@@ -8,13 +8,14 @@ from ..observe.model_table import model_table
 from ..observe.programmes import are_cells, with_programme
 from ..observe.replicas import Setting, seed_of
 from ..results import Run
+from .charts import run_chart
 from .figure_data import FigureOptions
 from .packing_view import PackingLimits, ShownPacking, packing_view
 from .page import Page
-from .run_charts import run_charts
+from .run_figures import run_figures
 from .run_tables import table_of_comparisons, table_of_energies, table_of_models, table_of_scaling
-from .scan_tables import tables_of_scans
 from .run_words import main_result, new_words, what_was_simulated
+from .scan_tables import tables_of_scans
 
 MOST_SEEDS = 12  # that are listed
 
@@ -66,11 +67,11 @@ def _head(runs: RunsOnPage) -> str:
 
 def _add_charts(page: Page, runs: RunsOnPage, options: FigureOptions) -> None:
     page.section("Stresses and contacts" if all(are_cells(setting.replicas) for setting in runs.settings) else "Forces and contacts")
-    made = run_charts(runs.settings, runs.reference, options)
-    for chart in made.charts:
-        page.chart(chart)
-    for note in made.notes:
-        page.paragraph(note)
+    made = run_figures(runs.settings, runs.reference, options)
+    for figure in made.figures:
+        page.chart(run_chart(figure))
+    for missing in made.missing:
+        page.paragraph(f"No chart of {missing}.")
 
 
 def _add_packing(page: Page, runs: RunsOnPage) -> None:

@@ -1,5 +1,5 @@
 """Text tables: aligned for a terminal, or Markdown."""
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -26,15 +26,25 @@ class TextTable:
     notes: list[str] = field(default_factory=list)
 
 
+def table_of(titles: Sequence[str], rows: Iterable[list[str]], notes: Iterable[str] = ()) -> TextTable:
+    """A table whose columns are aligned to the left if their title begins with "<", which is not shown."""
+    columns = [Column(title.removeprefix("<"), "left" if title.startswith("<") else "right") for title in titles]
+    return TextTable(columns, list(rows), list(notes))
+
+
 def to_text(table: TextTable, markdown: bool = False) -> str:
     """The table for a terminal, or as Markdown."""
-    lines = [_prepared(cells, markdown) for cells in ([column.title for column in table.columns], *table.rows)]
+    def prepared(text: str) -> str:
+        return one_line(text).translate(ESCAPED) if markdown else one_line(text)
+
+    is_left = [column.align == "left" for column in table.columns]
+    lines = [[prepared(cell) for cell in cells] for cells in ([column.title for column in table.columns], *table.rows)]
     widths = [max(3, *map(width_of, column)) for column in zip(*lines, strict=True)]
-    sides = [column.align for column in table.columns]
-    lines = [[_padded(*cell) for cell in zip(cells, widths, sides, strict=True)] for cells in lines]
-    lines.insert(1, [_rule(width, side, markdown) for width, side in zip(widths, sides, strict=True)])
-    notes = [("- " if markdown else "  ") + note for note in _prepared(table.notes, markdown)]
-    return "".join(line + "\n" for line in [*(_line(cells, markdown) for cells in lines), *([""] if notes else []), *notes])
+    lines = [[_padded(*cell) for cell in zip(cells, widths, is_left, strict=True)] for cells in lines]
+    lines.insert(1, [_rule(width, left) if markdown else "─" * width for width, left in zip(widths, is_left, strict=True)])
+    text = [f"| {' | '.join(cells)} |" if markdown else "  ".join(cells).rstrip(" ") for cells in lines]
+    notes = [("- " if markdown else "  ") + prepared(note) for note in table.notes]
+    return "".join(line + "\n" for line in [*text, *([""] if notes else []), *notes])
 
 
 def width_of(text: str) -> int:
@@ -42,20 +52,11 @@ def width_of(text: str) -> int:
     return sum(not 0xDC80 <= ord(character) < 0xDCC0 for character in text)
 
 
-def _prepared(cells: Sequence[str], markdown: bool) -> list[str]:
-    return [one_line(cell).translate(ESCAPED) if markdown else one_line(cell) for cell in cells]
-
-
-def _padded(cell: str, width: int, side: Align) -> str:
+def _padded(cell: str, width: int, is_left: bool) -> str:
     blanks = " " * (width - width_of(cell))
-    return cell + blanks if side == "left" else blanks + cell
+    return cell + blanks if is_left else blanks + cell
 
 
-def _rule(width: int, side: Align, markdown: bool) -> str:
-    if not markdown:
-        return "─" * width
-    return ":" + "-" * (width - 1) if side == "left" else "-" * (width - 1) + ":"
-
-
-def _line(cells: Sequence[str], markdown: bool) -> str:
-    return "|" + "".join(f" {cell} |" for cell in cells) if markdown else "  ".join(cells).rstrip(" ")
+def _rule(width: int, is_left: bool) -> str:
+    dashes = "-" * (width - 1)
+    return ":" + dashes if is_left else dashes + ":"
