@@ -8,7 +8,7 @@ foreach(line ${lines})
     set(suite ${CMAKE_MATCH_1})
     string(APPEND tests "add_test([=[${NAME}.${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n"
       "set_tests_properties([=[${NAME}.${suite}]=] PROPERTIES TIMEOUT 1800)\n")
-    if(suite MATCHES "AuthorsPacking|RandomScenes|DiagnoseTest|DiagnoseHoldTest")  # long: these begin first
+    if(suite MATCHES "AuthorsPacking|RandomScenes|Diagnose[A-Za-z]*Test|ProgrammePartsTest|CliTest")  # long: these begin first
       string(APPEND tests "set_tests_properties([=[${NAME}.${suite}]=] PROPERTIES COST 200)\n")
     endif()
   endif()

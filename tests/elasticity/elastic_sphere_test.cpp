@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <thread>
 
@@ -17,8 +18,6 @@ using reference::point_force_on_sphere;
 using reference::power_sum;
 using reference::SphereSeries;
 using std::numbers::pi;
-
-double half_sine(double degrees) { return std::sin(degrees / 2 * pi / 180); }
 
 double fitted_self(const SurfaceLaw& sphere, double a) {
     const auto& S = sphere.self;
@@ -52,17 +51,13 @@ TEST(ElasticSphere, FilteredSeriesAgreesWithTheClosedForm) {
 }
 
 TEST(ElasticSphere, SizeTermIsExactAtSeveralAngles) {
-    struct Row {
-        double nu, at_60, at_90, at_120, at_180;
-    };
-    for (const Row& row :
-         {Row{0.5, -.15761, -.02822, .06834, .15819}, Row{0.3, -.18284, -.04189, .05726, .14749},
-          Row{0.0, -.21091, -.06521, .03547, .12590}}) {
-        EXPECT_NEAR(sphere_displacement(row.nu, half_sine(60)).size, row.at_60, 6e-6);
-        EXPECT_NEAR(sphere_displacement(row.nu, half_sine(90)).size, row.at_90, 6e-6);
-        EXPECT_NEAR(sphere_displacement(row.nu, half_sine(120)).size, row.at_120, 6e-6);
-        EXPECT_NEAR(sphere_displacement(row.nu, half_sine(180)).size, row.at_180, 6e-6);
-    }
+    const double degrees[] = {60, 90, 120, 180};
+    for (const auto& [nu, expected] :
+         std::map<double, std::array<double, 4>>{{0.5, {-.15761, -.02822, .06834, .15819}},
+                                                 {0.3, {-.18284, -.04189, .05726, .14749}},
+                                                 {0.0, {-.21091, -.06521, .03547, .12590}}})
+        for (int k = 0; k < 4; ++k)
+            EXPECT_NEAR(sphere_displacement(nu, std::sin(degrees[k] / 360 * pi)).size, expected[k], 6e-6);
 }
 
 // The remainder is of fourth order in the contact radii: halving them reduces it to a sixteenth.
@@ -83,16 +78,13 @@ TEST(ElasticSphere, SizeTermIsTheSecondOrderForDistributedLoads) {
 }
 
 TEST(ElasticSphere, SelfTermIsExactAtSeveralContactRadii) {
-    struct Row {
-        double nu;
-        std::array<double, 5> fitted;  // at a/R = 0.1, 0.2, .. 0.5
-    };
-    for (const Row& row : {Row{0.5, {.30936, .29953, .28735, .27263, .25519}},
-                           Row{0.3, {.41593, .41886, .40947, .39335, .37222}},
-                           Row{0.0, {.27531, .36387, .40078, .41359, .41133}}})
-        for (int i = 0; i < 5; ++i)
-            EXPECT_NEAR(fitted_self(elastic_sphere(row.nu), 0.1 * (i + 1)), row.fitted[i], 6e-6)
-                << "nu " << row.nu << " a/R " << 0.1 * (i + 1);
+    for (const auto& [nu, expected] :
+         std::map<double, std::array<double, 5>>{{0.5, {.30936, .29953, .28735, .27263, .25519}},
+                                                 {0.3, {.41593, .41886, .40947, .39335, .37222}},
+                                                 {0.0, {.27531, .36387, .40078, .41359, .41133}}})
+        for (int i = 0; i < 5; ++i)  // at a/R = 0.1, 0.2, .. 0.5
+            EXPECT_NEAR(fitted_self(elastic_sphere(nu), 0.1 * (i + 1)), expected[i], 6e-6)
+                << "nu " << nu << " a/R " << 0.1 * (i + 1);
     EXPECT_NEAR(elastic_sphere(0.5).self[0], 0.3170, 1e-4);
 }
 

@@ -5,18 +5,20 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <map>
 #include <numbers>
-#include <sstream>
 
-#include "reference/plates_reference.h"
+#include "reference/truth_table.h"
 
 namespace mcdem {
 namespace {
 
+using reference::equal_plates;
+using reference::images;
+using reference::images_of;
 using reference::Plate;
 using reference::solve_plates;
+using reference::truth_table;
 using std::numbers::pi;
 
 /// One load of an arrangement: every plate with its force by finite elements.
@@ -32,43 +34,17 @@ int mirrors_of(const std::string& name) {
     return name.starts_with("asymmetric") ? 0 : name.starts_with("random") ? 2 : 3;
 }
 
-/// A plate and its mirror images at x = 0, y = 0 and z = 0, for this number of planes.
-std::vector<Vec3> images(const Vec3& normal, int mirrors) {
-    std::vector<Vec3> all;
-    for (int signs = 0; signs < 1 << mirrors; ++signs) {
-        Vec3 image = normal;
-        for (int axis = 0; axis < mirrors; ++axis)
-            if (signs >> axis & 1) image[axis] *= -1;
-        const auto is_image = [&](const Vec3& known) { return (known - image).norm() < 1e-9; };
-        if (std::ranges::none_of(all, is_image)) all.push_back(image);
-    }
-    return all;
-}
-
-/// The lines of a table of tests/truth, cell by cell.
-std::vector<std::vector<std::string>> cells_of(const std::string& name, std::size_t columns) {
-    std::ifstream table(MCDEM_SOURCE_DIR "/tests/truth/" + name);
-    std::vector<std::vector<std::string>> all;
-    std::string line, cell;
-    for (std::getline(table, line); std::getline(table, line);) {
-        all.emplace_back();
-        for (std::stringstream cells(line); std::getline(cells, cell, ',');) all.back().push_back(cell);
-        if (all.back().size() != columns) throw std::runtime_error(name + ": " + line);
-    }
-    return all;
-}
-
 std::vector<Load> finite_elements() {
     std::map<std::string, Load> loads;
-    for (const auto& c : cells_of("neo_hookean_plates.csv", 10)) {
-        if (c[3] == "equator") continue;
-        Load& load = loads[c[0] + c[1] + ' ' + c[2]];
-        load.name = c[0];
-        load.poisson_ratio = std::stod(c[1]);
-        const Vec3 normal(std::stod(c[5]), std::stod(c[6]), std::stod(c[7]));
-        for (const Vec3& image : images(normal, mirrors_of(c[0]))) {
-            load.plates.push_back({image, std::stod(c[8])});
-            load.force.push_back(std::stod(c[9]));
+    for (const auto& row : truth_table("neo_hookean_plates.csv")) {
+        if (row.at("plate") == "equator") continue;
+        Load& load = loads[row.at("case") + row.at("poisson_ratio") + ' ' + row.at("load")];
+        load.name = row.at("case");
+        load.poisson_ratio = row.number("poisson_ratio");
+        const Vec3 normal(row.number("x"), row.number("y"), row.number("z"));
+        for (const Vec3& image : images(normal, mirrors_of(load.name))) {
+            load.plates.push_back({image, row.number("overlap")});
+            load.force.push_back(row.number("force"));
         }
     }
     std::vector<Load> all;
@@ -175,10 +151,7 @@ TEST(HyperelasticSphere, AgreesWithFiniteElementsInNearlyFilledCells) {
 TEST(HyperelasticSphere, EqualsTheElasticSphereAtSmallOverlaps) {
     for (double nu : {0.0, 0.3, 0.4, 0.49, 0.5})
         for (double overlap : {1e-5, 1e-4, 1e-3}) {
-            const std::vector<Plate> plates{{Vec3::UnitZ(), overlap},
-                                            {-Vec3::UnitZ(), overlap},
-                                            {Vec3::UnitX(), overlap},
-                                            {-Vec3::UnitX(), overlap}};
+            const auto plates = equal_plates(images_of({Vec3::UnitZ(), Vec3::UnitX()}), overlap);
             const auto finite = forces(ContactModel::hyperelastic_sphere, nu, plates);
             const auto small = forces(ContactModel::elastic_sphere, nu, plates);
             EXPECT_NEAR(finite->force[0] / small->force[0], 1, 0.2 * std::sqrt(overlap))
@@ -283,17 +256,17 @@ double solve_force(double least, double most, auto&& excess) {
 // Contacts of spheres with unequal radii, or of equal spheres under unequal loads, are curved and not
 // symmetric.
 TEST(HyperelasticSphere, PlatesReplaceNeighbouringGrains) {
-    const auto rows = cells_of("neo_hookean_chain.csv", 7);
+    const auto rows = truth_table("neo_hookean_chain.csv");
     EXPECT_GE(rows.size(), 12u);
-    for (const auto& cells : rows) {
-        std::vector<double> c;
-        for (std::size_t i = 1; i < cells.size(); ++i) c.push_back(std::stod(cells[i]));
-        const auto [nu, parameter, overlap, force, side, side_force] =
-            std::tuple(c[0], c[1], c[2], c[3], c[4], c[5]);
+    for (const auto& row : rows) {
+        const std::string& arrangement = row.at("case");
+        const double nu = row.number("poisson_ratio"), parameter = row.number("parameter"),
+                     overlap = row.number("overlap"), force = row.number("force"),
+                     side = row.number("side_overlap"), side_force = row.number("side_force");
         const Row law(ContactModel::hyperelastic_sphere, nu);
         if (overlap < 0.08) continue;  // not resolved by the mesh
-        const std::string where = fmt::format("{} nu {} overlap {}", cells[0], nu, overlap);
-        if (cells[0] == "unequal") {
+        const std::string where = fmt::format("{} nu {} overlap {}", arrangement, nu, overlap);
+        if (arrangement == "unequal") {
             const double found = solve_force(force / 3, 3 * force,
                                              [&](double f) { return law.of_two(f, parameter) - overlap; });
             EXPECT_NEAR(found / force, 1, 0.01) << where;
@@ -314,13 +287,13 @@ TEST(HyperelasticSphere, PlatesReplaceNeighbouringGrains) {
 // Two plates move the equator outward; a third plate touches it at this distance.
 TEST(HyperelasticSphere, FirstContactOfTheEquatorWithinThreePerCent) {
     int judged = 0;
-    for (const auto& c : cells_of("neo_hookean_plates.csv", 10)) {
-        const double nu = std::stod(c[1]), load = std::stod(c[2]);
-        if (c[3] != "equator" || load < 0.04) continue;
+    for (const auto& row : truth_table("neo_hookean_plates.csv")) {
+        const double nu = row.number("poisson_ratio"), load = row.number("load");
+        if (row.at("plate") != "equator" || load < 0.04) continue;
         const auto solution = forces(ContactModel::hyperelastic_sphere, nu,
                                      {{Vec3::UnitZ(), load}, {-Vec3::UnitZ(), load}, {Vec3::UnitX(), -0.5}});
         ASSERT_TRUE(solution);
-        EXPECT_NEAR(solution->displacement[2] / -std::stod(c[8]), 1, 0.03) << nu << ' ' << load;
+        EXPECT_NEAR(solution->displacement[2] / -row.number("overlap"), 1, 0.03) << nu << ' ' << load;
         ++judged;
     }
     EXPECT_EQ(judged, 21);
@@ -332,10 +305,8 @@ TEST(HyperelasticSphere, ForcesIncreaseWithoutRunAway) {
     for (double nu : {0.3, 0.4, 0.49}) {
         double before = 0;
         for (double overlap = 0.02; overlap < 0.14; overlap += 0.02) {
-            std::vector<Plate> plates;
-            for (const Vec3& e : {Vec3(1, 1, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)})
-                for (const Vec3& image : images(e.normalized(), 3)) plates.push_back({image, overlap});
-            const auto solution = forces(ContactModel::hyperelastic_sphere, nu, plates);
+            const auto solution = forces(ContactModel::hyperelastic_sphere, nu,
+                                         equal_plates(images_of({{1, 1, 0}, {1, 0, 1}, {0, 1, 1}}), overlap));
             ASSERT_TRUE(solution) << nu << ' ' << overlap;
             EXPECT_GT(solution->force[0], 1.2 * before);
             before = solution->force[0];

@@ -3,86 +3,40 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <functional>
 #include <map>
-#include <sstream>
 
 #include "core/names.h"
-#include "reference/plates_reference.h"
+#include "reference/truth_table.h"
 
 namespace mcdem::plates {
 namespace {
 
+using reference::images;
+using reference::images_of;
 using reference::Plate;
 using reference::PlateSolution;
+using reference::truth_table;
 using std::numbers::pi;
 using Directions = std::vector<Vec3>;
-using Row = std::map<std::string, std::string>;
-
-const std::string fem_folder = MCDEM_SOURCE_DIR "/tests/truth/fem/";
-
-/// A table of comma-separated values, by the column names in its first line.
-std::vector<Row> read_table(const std::string& file) {
-    const auto split = [](const std::string& line) {
-        std::vector<std::string> cells;
-        std::stringstream text(line + ",");
-        for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
-        return cells;
-    };
-    std::ifstream in(file);
-    std::string line;
-    std::getline(in, line);
-    const auto names = split(line);
-    std::vector<Row> rows;
-    while (std::getline(in, line)) {
-        const auto cells = split(line);
-        EXPECT_EQ(cells.size(), names.size()) << file << ": " << line;
-        for (std::size_t i = 0; i < std::min(cells.size(), names.size()); ++i) {
-            if (i == 0) rows.emplace_back();
-            rows.back()[names[i]] = cells[i];
-        }
-    }
-    return rows;
-}
-
-double number(const Row& row, const std::string& column) { return std::stod(row.at(column)); }
-
-Directions pair(const Vec3& axis) { return {axis, -axis}; }
-
-Directions joined(std::initializer_list<Directions> parts) {
-    Directions all;
-    for (const Directions& part : parts) all.insert(all.end(), part.begin(), part.end());
-    return all;
-}
+using Row = reference::TruthRow;
 
 /// One group of plates, or two groups with different overlaps (overlap1, overlap2 of the tables).
 std::vector<Directions> arrangement(const std::string& name) {
-    const Directions x = pair(Vec3::UnitX()), y = pair(Vec3::UnitY()), z = pair(Vec3::UnitZ());
+    const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
     const Directions triangle{{1, 0, 0}, {-.5, std::sqrt(.75), 0}, {-.5, -std::sqrt(.75), 0}};
-    const auto in_xz = [](double degrees) {
-        return Vec3(std::sin(degrees * pi / 180), 0, std::cos(degrees * pi / 180));
-    };
-    Directions fcc;
-    for (double a : {1, -1})
-        for (double b : {1, -1})
-            for (const Vec3& e : {Vec3(a, b, 0), Vec3(a, 0, b), Vec3(0, a, b)}) fcc.push_back(e.normalized());
-    Directions cube;
-    for (double a : {1, -1})
-        for (double b : {1, -1})
-            for (double c : {1, -1}) cube.push_back(Vec3(a, b, c).normalized());
+    const double angle = 35 * pi / 180;
     const std::map<std::string, std::vector<Directions>> known{
-        {"two_plates", {z}},
+        {"two_plates", {images(z)}},
         {"three_triangle", {triangle}},
-        {"four_square", {joined({x, y})}},
+        {"four_square", {images_of({x, y})}},
         {"tetrahedron", {{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}}},
-        {"two_plus_two", {z, x}},
-        {"two_plus_four", {z, joined({x, y})}},
-        {"two_plus_triangle", {z, triangle}},
-        {"rect_70deg", {{in_xz(35), in_xz(-35), in_xz(145), in_xz(-145)}}},
-        {"six_plates", {joined({z, x, y})}},
-        {"eight_cube", {cube}},
-        {"twelve_fcc", {fcc}}};
+        {"two_plus_two", {images(z), images(x)}},
+        {"two_plus_four", {images(z), images_of({x, y})}},
+        {"two_plus_triangle", {images(z), triangle}},
+        {"rect_70deg", {images(Vec3(std::sin(angle), 0, std::cos(angle)))}},
+        {"six_plates", {images_of({z, x, y})}},
+        {"eight_cube", {images(Vec3(1, 1, 1))}},
+        {"twelve_fcc", {images_of({{1, 1, 0}, {1, 0, 1}, {0, 1, 1}})}}};
     return known.at(name);
 }
 
@@ -90,22 +44,22 @@ std::optional<PlateSolution> solve(ContactModel model, double nu, const std::vec
                                    const std::vector<double>& overlaps) {
     std::vector<Plate> plates;
     for (std::size_t g = 0; g < groups.size(); ++g)
-        for (const Vec3& direction : groups[g]) plates.push_back({direction, overlaps[g]});
+        std::ranges::copy(reference::equal_plates(groups[g], overlaps[g]), std::back_inserter(plates));
     return solve_plates(surface_law(model, nu, 1.125), nu, plates);
 }
 
 /// Force of the model over that of the table's row; NaN if the model has no solution.
 double fem_ratio(ContactModel model, const Row& row) {
-    const auto solution = solve(model, number(row, "poisson_ratio"), arrangement(row.at("case")),
-                                {number(row, "overlap_over_R")});
-    return solution ? solution->force[0] / number(row, "force_over_E_R2") : std::nan("");
+    const auto solution = solve(model, row.number("poisson_ratio"), arrangement(row.at("case")),
+                                {row.number("overlap_over_R")});
+    return solution ? solution->force[0] / row.number("force_over_E_R2") : std::nan("");
 }
 
 class FiniteElements : public testing::Test {
 protected:
     void SetUp() override {
-        forces_ = read_table(fem_folder + "sphere_between_plates.csv");
-        displacements_ = read_table(fem_folder + "equator_bulge.csv");
+        forces_ = truth_table("fem/sphere_between_plates.csv");
+        displacements_ = truth_table("fem/equator_bulge.csv");
         ASSERT_EQ(forces_.size(), 36u);
         ASSERT_EQ(displacements_.size(), 18u);
     }
@@ -120,14 +74,13 @@ TEST_F(FiniteElements, ElasticSphereAgreesWithinOnePerCent) {
 
 TEST_F(FiniteElements, DisplacementOfTheEquatorWithinOnePerCent) {
     for (const Row& row : displacements_) {
-        const double overlap = number(row, "overlap_over_R");
-        const Directions z = pair(Vec3::UnitZ()),
-                         probed{Vec3::UnitX()};  // the third plate is too far to touch
-        const auto solution =
-            solve(ContactModel::elastic_sphere, number(row, "poisson_ratio"), {z, probed}, {overlap, -0.5});
+        const double overlap = row.number("overlap_over_R");
+        // the third plate is too far to touch
+        const auto solution = solve(ContactModel::elastic_sphere, row.number("poisson_ratio"),
+                                    {images(Vec3::UnitZ()), {Vec3::UnitX()}}, {overlap, -0.5});
         ASSERT_TRUE(solution);
         EXPECT_EQ(solution->force[2], 0);
-        EXPECT_NEAR(solution->displacement[2] / number(row, "outward_displacement_over_R"), 1, 0.01)
+        EXPECT_NEAR(solution->displacement[2] / row.number("outward_displacement_over_R"), 1, 0.01)
             << "nu " << row.at("poisson_ratio") << " overlap " << overlap;
     }
 }
@@ -144,8 +97,8 @@ TEST_F(FiniteElements, OtherModelsHaveTheKnownErrors) {
                                    Known{ContactModel::elastic_half_space, 1.028, 1.154, 0.932, 1.408}};
     for (const Known& known : all)
         for (const Row& row : forces_) {
-            if (number(row, "overlap_over_R") != 0.1) continue;
-            const bool two = row.at("case") == "two_plates", soft = number(row, "poisson_ratio") == 0.3;
+            if (row.number("overlap_over_R") != 0.1) continue;
+            const bool two = row.at("case") == "two_plates", soft = row.number("poisson_ratio") == 0.3;
             const double expected = two ? (soft ? known.two_at_03 : known.two_at_049)
                                         : (soft ? known.six_at_03 : known.six_at_049);
             EXPECT_NEAR(fem_ratio(known.model, row), expected, 0.002)
@@ -191,7 +144,7 @@ TEST_F(FiniteElements, TableOfModels) {
         EXPECT_GT(miss, 10 * worst.at("elastic_sphere")) << model;
     }
     const auto at_finite_strain =
-        print_table("neo-Hookean", read_table(fem_folder + "neo_hookean_sphere_between_plates.csv"));
+        print_table("neo-Hookean", truth_table("fem/neo_hookean_sphere_between_plates.csv"));
     EXPECT_LT(at_finite_strain.at("hyperelastic_sphere"), 0.05);
     for (const auto& [model, miss] : at_finite_strain) {
         if (model == "hyperelastic_sphere") continue;
@@ -211,16 +164,16 @@ double tolerance(const std::string& name, double overlap) {
 }
 
 TEST(SeriesTruth, ElasticSphereAgreesInOtherArrangements) {
-    const auto rows = read_table(MCDEM_SOURCE_DIR "/tests/truth/other_arrangements.csv");
+    const auto rows = truth_table("other_arrangements.csv");
     ASSERT_EQ(rows.size(), 218u);
     for (const Row& row : rows) {
         const std::string& name = row.at("case");
-        const double nu = number(row, "poisson_ratio");
+        const double nu = row.number("poisson_ratio");
         const auto groups = arrangement(name);
-        std::vector<double> overlaps{number(row, "overlap1")}, truth{number(row, "force1")};
+        std::vector<double> overlaps{row.number("overlap1")}, truth{row.number("force1")};
         if (groups.size() == 2) {
-            overlaps.push_back(number(row, "overlap2"));
-            truth.push_back(number(row, "force2"));
+            overlaps.push_back(row.number("overlap2"));
+            truth.push_back(row.number("force2"));
         }
         const auto solution = solve(ContactModel::elastic_sphere, nu, groups, overlaps);
         ASSERT_TRUE(solution) << name << " nu " << nu << " overlap " << overlaps[0];

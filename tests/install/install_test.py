@@ -1,4 +1,4 @@
-"""`cmake --install` into an empty prefix: program, module, and a project that embeds the engine.
+"""`cmake --install` into an empty prefix: program, module, and a project that embeds the engine; the program also after a move.
 
 install_test.py SOURCE BUILD CMAKE [PYTHON]
 """
@@ -23,6 +23,13 @@ def check_no_source(source, prefix):
         assert str(source) not in file.read_text(), f"{file}: names {source}"
 
 
+def check_moved(prefix, folder):
+    """The program finds its files and the Python package after the whole prefix was moved."""
+    prefix.rename(folder / "elsewhere")
+    run(folder / "elsewhere/bin/mcdem", "report", folder / "run", "--out", folder / "page.html", env=environment_without_source())
+    assert (folder / "page.html").exists()
+
+
 def main():
     source, build, cmake, python = arguments()
     with tempfile.TemporaryDirectory(prefix="mcdem-install-") as name:
@@ -36,6 +43,8 @@ def main():
         if python:
             check_module(python, prefix)
         check_embedding(source, cmake, prefix, folder)
+        check_moved(prefix, folder)
+        assert build / "mcdem" in check_run_paths(build)
 
 
 if __name__ == "__main__":

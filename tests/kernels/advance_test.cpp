@@ -70,15 +70,6 @@ TEST(Step, FollowsTheReferenceInABatchOfDifferentReplicas) {
     }
 }
 
-TEST(Step, FollowsTheReferenceWith32Slots) {
-    for (Precision precision : precisions()) {
-        std::vector<Start> starts;
-        for (ContactModel model : all_models)
-            starts.push_back(with_many_neighbours(start_of(model, FrictionLaw::mindlin, 64, 11)));
-        expect_steps_as_reference(build(precision, 32), starts, 12);
-    }
-}
-
 class Slots : public testing::TestWithParam<int> {};
 
 TEST_P(Slots, FollowTheReference) {
@@ -95,24 +86,16 @@ TEST_P(Slots, FollowTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(, Slots, testing::Values(16, 32, 48, 64));
 
-void expect_other_way_as_reference(Precision precision) {
-    std::vector<Start> starts;
-    for (ContactModel model : all_models) starts.push_back(start_of(model, FrictionLaw::mindlin, 17, 13));
-    starts.push_back(start_of(ContactModel::mc_dem, FrictionLaw::saturated, 65, 14));
-    expect_steps_as_reference(other_way(build(precision)), starts, 15);
-    for (Start& start : starts) start = with_many_neighbours(start);
-    expect_steps_as_reference(other_way(build(precision, 32)), starts, 16);
-}
-
-TEST(Step, FollowsTheReferenceInTheOtherLayout) {
-    SKIP_WITHOUT_OTHER_WAY();
-    expect_other_way_as_reference(Precision::single_precision);
-}
-
-TEST(Step, FollowsTheReferenceInTheOtherLayoutInDouble) {
-    SKIP_WITHOUT_OTHER_WAY();
-    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
-    expect_other_way_as_reference(Precision::double_precision);
+TEST(Step, FollowsTheReferenceInBothLayouts) {
+    for (Precision precision : precisions()) {
+        std::vector<Start> starts;
+        for (ContactModel model : all_models) starts.push_back(start_of(model, FrictionLaw::mindlin, 17, 13));
+        starts.push_back(start_of(ContactModel::mc_dem, FrictionLaw::saturated, 65, 14));
+        for (const KernelBuild& way : all_ways(build(precision))) expect_steps_as_reference(way, starts, 15);
+        for (Start& start : starts) start = with_many_neighbours(start);
+        for (const KernelBuild& way : all_ways(build(precision, 32)))
+            expect_steps_as_reference(way, starts, 16);
+    }
 }
 
 // Checks the comparison itself: it detects a Young's modulus that is wrong by a thousandth.

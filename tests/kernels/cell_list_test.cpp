@@ -11,7 +11,7 @@ namespace {
 struct CellScene {
     explicit CellScene(const std::vector<Start>& starts)
         : kernels(build(Precision::single_precision)),
-          layout(mcdem::make_layout(packings(starts), kernels.block())) {
+          layout(mcdem::make_layout(each(starts, &Start::packing), kernels.block())) {
         int cells = 0;
         for (int r = 0; r < layout.replicas(); ++r) {
             replicas.push_back(mcdem::device_replica<mcdem::f32::Replica>(
@@ -58,12 +58,6 @@ struct CellScene {
                            fields.rebuilt_blocks, fields.motion.now(0), fields.cell_head, fields.cell_next);
         fields.cell_head.read(cell_head.data());
         fields.cell_next.read(cell_next.data());
-    }
-
-    static std::vector<Packing> packings(const std::vector<Start>& starts) {
-        std::vector<Packing> all;
-        for (const auto& start : starts) all.push_back(start.packing);
-        return all;
     }
 
     KernelBuild kernels;

@@ -14,13 +14,6 @@ struct Contact {
 /// Sums of force times branch [N m] for grains at these stored positions, with one slot per contact.
 Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Vec3>& position,
                         const std::vector<Contact>& contacts) {
-    struct Replicas;
-    struct Portions;
-    struct Steps;
-    struct Grains;
-    struct Partner;
-    struct Force;
-    struct Moments;
     const KernelBuild kernels = build(Precision::single_precision);
     const std::size_t rows = (position.size() + 15) / 16 * 16 * slots;
     std::vector<float> motion(position.size() * 12, 0);
@@ -36,25 +29,9 @@ Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Ve
         for (int axis = 0; axis < 3; ++axis)
             force[kernels.place_of_slot(grain, slot, axis, 3)] = static_cast<float>(c.force[axis]);
     }
-    const mcdem::Portion portion{0, 0};
-    const int step = 0;
-    mcdem::Field<Replicas> replicas(device(), 1, sizeof replica);
-    mcdem::Field<Portions> portions(device(), 1, sizeof portion);
-    mcdem::Field<Steps> steps(device(), 1, sizeof step);
-    mcdem::Field<Grains> grains(device(), position.size(), 12 * sizeof(float));
-    mcdem::Field<Partner> partners(device(), rows, sizeof(int));
-    mcdem::Field<Force> forces(device(), 3 * rows, sizeof(float));
-    mcdem::Field<Moments> out(device(), 9, sizeof(float));
-    replicas.write(&replica);
-    portions.write(&portion);
-    steps.write(&step);
-    grains.write(motion.data());
-    partners.write(partner.data());
-    forces.write(force.data());
-    const cl::Program program = with_kernel("", kernels);
-    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Portions>, mcdem::Field<Steps>, mcdem::Field<Grains>,
-                  mcdem::Field<Partner>, mcdem::Field<Force>, mcdem::Field<Moments>>(
-        device(), program, "cell_stress", 64)(1, replicas, portions, steps, grains, partners, forces, out);
+    const Buffer out = room_for<float>(9);
+    launch(with_kernel("", kernels), "cell_stress", 64, 1, uploaded(replica), uploaded(mcdem::Portion{0, 0}),
+           uploaded(0), uploaded(motion), uploaded(partner), uploaded(force), out);
     Eigen::Matrix<float, 3, 3, Eigen::RowMajor> sums;
     out.read(sums.data());
     return sums.cast<double>();

@@ -30,21 +30,11 @@ kernel void see(global const Replica* replica, global const Motion* motion, glob
     }
 })",
                                             kernels);
-    struct Replicas;
-    struct Grains;
-    struct Partner;
-    struct Out;
     partner.resize(slots, NO_PARTNER);
     motion.resize(16 * 12);  // a CPU work-item has 16 grains
-    mcdem::Field<Replicas> replicas(device(), 1, sizeof replica);
-    mcdem::Field<Grains> grains(device(), motion.size() / 12, 12 * sizeof(float));
-    mcdem::Field<Partner> partners(device(), slots, sizeof(int));
-    mcdem::Field<Out> out(device(), slots * written, sizeof(float));
-    replicas.write(&replica);
-    grains.write(motion.data());
-    partners.write(partner.data());
-    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Grains>, mcdem::Field<Partner>, mcdem::Field<Out>>(
-        device(), program, "see", kernels.lanes > 1 ? 1 : slots)(1, replicas, grains, partners, out);
+    const Buffer out = room_for<float>(slots * written);
+    launch(program, "see", kernels.lanes > 1 ? 1 : slots, 1, uploaded(replica), uploaded(motion),
+           uploaded(partner), out);
     Eigen::Matrix<float, slots, written> numbers;
     out.read(numbers.data());
     std::vector<NeighbourGeometry> all;
@@ -61,13 +51,8 @@ void add_grain(std::vector<float>& motion, const Vec3& position, double radius, 
         motion.push_back(static_cast<float>(number));
 }
 
-class ContactGeometry : public testing::TestWithParam<bool> {
+class ContactGeometry : public InBothLayouts {
 protected:
-    void SetUp() override {
-        if (!GetParam()) return;
-        SKIP_WITHOUT_OTHER_WAY();
-        kernels = other_way(kernels);
-    }
     ContactGeometry() {
         replica.wall_position[1] = 0.2F;
         replica.wall_position[3] = 0.1F;
@@ -89,7 +74,6 @@ protected:
         EXPECT_LT((found.velocity - velocity).norm(), 1e-6);
         EXPECT_NEAR(found.radius, radius, 1e-8);
     }
-    KernelBuild kernels = build(Precision::single_precision);
     mcdem::f32::Replica replica{};
     std::vector<Vec3> position, velocity;
     std::vector<float> motion;

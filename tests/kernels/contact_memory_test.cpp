@@ -33,20 +33,10 @@ kernel void store_and_load(global const Replica* replica, global real* memory, g
     out[6] = loaded.rolling.x.s5, out[7] = loaded.rolling.y.s5, out[8] = loaded.rolling.z.s5;
 })",
                                             cpu_like);
-    struct Replicas;
-    struct Rows;
-    struct Out;
-    mcdem::Field<Replicas> of(device(), 1, sizeof replica);
-    mcdem::Field<Rows> memory(device(), grains * rows * slots, sizeof(float));
-    mcdem::Field<Out> out(device(), 9, sizeof(float));
-    of.write(&replica);
-    std::vector<float> in_memory(grains * rows * slots, -1);
-    memory.write(in_memory.data());
-    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Rows>, mcdem::Field<Out>>(
-        device(), program, "store_and_load", 1)(1, of, memory, out);
-    std::vector<float> found(9);
-    out.read(found.data());
-    memory.read(in_memory.data());
+    const Buffer memory = uploaded(std::vector<float>(grains * rows * slots, -1)), out = room_for<float>(9);
+    launch(program, "store_and_load", 1, 1, uploaded(replica), memory, out);
+    auto found = downloaded<float>(out);
+    const auto in_memory = downloaded<float>(memory);
     for (int row = 0; row < replica.memory_rows; ++row)
         found.push_back(
             in_memory[static_cast<std::size_t>((first * replica.memory_rows + row * 16 + 1) * slots + 3)]);
@@ -55,39 +45,39 @@ kernel void store_and_load(global const Replica* replica, global real* memory, g
     return found;
 }
 
-TEST(ContactMemory, KeepsAllRowsIfAllEffectsAreOn) {
-    SKIP_WITHOUT_OTHER_WAY();
-    mcdem::f32::Replica replica{};
-    replica.mindlin = MINDLIN_FORCE;
-    replica.memory_rows = 9;
-    replica.radius_row = 3;
-    replica.deepest_row = 4;
-    replica.relaxed_row = 5;
-    replica.rolling_row = 6;
-    replica.effects = EFFECT_PLASTICITY | EFFECT_VISCOELASTICITY | EFFECT_ROLLING_RESISTANCE;
-    EXPECT_EQ(remembered(replica),
-              (std::vector<float>{5103, 5203, 5303, 5403, 5503, 5603, 5703, 5803, 5903, 3101, 3201, 3301,
-                                  3401, 3501, 3601, 3701, 3801, 3901}));
-}
+/// The rows of a replica whose memory has some of the members, and what is remembered.
+struct Rows {
+    int effects, mindlin, count, radius, deepest, relaxed, rolling;
+    std::vector<float> expected;
+};
 
-TEST(ContactMemory, KeepsOnlyTheRowsThatTheReplicaNeeds) {
+TEST(ContactMemory, KeepsTheRowsThatTheReplicaNeeds) {
     SKIP_WITHOUT_OTHER_WAY();
-    mcdem::f32::Replica replica{};
-    replica.memory_rows = 1;
-    replica.relaxed_row = 0;
-    replica.effects = EFFECT_VISCOELASTICITY;
-    EXPECT_EQ(remembered(replica), (std::vector<float>{0, 0, 0, 0, 0, 5603, 0, 0, 0, 3601}));
-}
-
-TEST(ContactMemory, RollingResistanceNeedsTheContactRadius) {
-    SKIP_WITHOUT_OTHER_WAY();
-    mcdem::f32::Replica replica{};
-    replica.memory_rows = 4;
-    replica.radius_row = 0;
-    replica.rolling_row = 1;
-    replica.effects = EFFECT_ROLLING_RESISTANCE;
-    EXPECT_EQ(remembered(replica),
-              (std::vector<float>{0, 0, 0, 5403, 0, 0, 5703, 5803, 5903, 3401, 3701, 3801, 3901}));
+    const Rows all[] = {{EFFECT_PLASTICITY | EFFECT_VISCOELASTICITY | EFFECT_ROLLING_RESISTANCE,
+                         MINDLIN_FORCE,
+                         9,
+                         3,
+                         4,
+                         5,
+                         6,
+                         {5103, 5203, 5303, 5403, 5503, 5603, 5703, 5803, 5903, 3101, 3201, 3301, 3401, 3501,
+                          3601, 3701, 3801, 3901}},
+                        {EFFECT_VISCOELASTICITY, 0, 1, 0, 0, 0, 0, {0, 0, 0, 0, 0, 5603, 0, 0, 0, 3601}},
+                        {EFFECT_ROLLING_RESISTANCE,
+                         0,
+                         4,
+                         0,
+                         0,
+                         0,
+                         1,
+                         {0, 0, 0, 5403, 0, 0, 5703, 5803, 5903, 3401, 3701, 3801, 3901}}};
+    for (const Rows& rows : all) {
+        mcdem::f32::Replica replica{};
+        replica.effects = rows.effects, replica.mindlin = rows.mindlin, replica.memory_rows = rows.count;
+        replica.radius_row = rows.radius, replica.deepest_row = rows.deepest;
+        replica.relaxed_row = rows.relaxed, replica.rolling_row = rows.rolling;
+        EXPECT_EQ(remembered(replica), rows.expected) << rows.count << " rows";
+    }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Mindlin friction at one contact with the floor, with prescribed motion of the grain: Mindlin's stiffness,
 // the Coulomb limit, and the hysteresis loop of cyclic shear.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -53,40 +54,25 @@ private:
     Batch batch_;
 };
 
-TEST(Mindlin, SmallShearHasMindlinsStiffness) {
-    ShearedGrain grain;
-    const double distance = 0.5 * ShearedGrain::slip();
-    const auto forces = grain.shear(distance, 20);
-    for (int step = 1; step <= 20; ++step)
-        EXPECT_NEAR(forces[step - 1] / (-ShearedGrain::stiffness() * distance * step / 20), 1, 1e-3) << step;
-    const auto back = grain.shear(-distance, 20);
-    EXPECT_NEAR(back.back() / forces.back(), 0, 1e-3) << "the spring has kept nothing";
-}
-
-TEST(Mindlin, LargeShearReachesTheCoulombLimit) {
-    ShearedGrain grain;
-    const auto forces = grain.shear(5 * ShearedGrain::slip(), 100);
-    for (int step = 21; step <= 100; ++step)
-        EXPECT_NEAR(forces[step - 1] / (-friction * ShearedGrain::weight()), 1, 1e-3) << step;
-    for (double force : forces) EXPECT_LE(std::abs(force), 1.001 * friction * ShearedGrain::weight());
-}
-
-// From slip in one direction to slip in the other. The force-displacement loop is a parallelogram of height
-// 2 mu F and width 2 (amplitude - slip): the work lost in a cycle is 4 mu F (amplitude - slip).
+// From rest to slip, to slip in the other direction, and back: at every step the force is that of a spring of
+// Mindlin's stiffness that yields at the Coulomb limit. tests/truth/pair_motions_test.py has pairs and
+// turning contacts.
 TEST(Mindlin, CyclicShearFollowsTheHysteresisLoop) {
     ShearedGrain grain;
-    const double slip = ShearedGrain::slip(), amplitude = 3 * slip, limit = friction * ShearedGrain::weight();
-    grain.shear(amplitude, 300);
-    const auto back = grain.shear(-2 * amplitude, 600), forth = grain.shear(2 * amplitude, 600);
-    const double step = 2 * amplitude / 600;
-    double work = 0;
-    for (double force : back) work += force * step;  // against the motion: positive on the way back
-    for (double force : forth) work -= force * step;
-    EXPECT_NEAR(work / (4 * limit * (amplitude - slip)), 1, 0.01);
-    // after the slip length the force is zero; after twice the slip length it is reversed
-    EXPECT_NEAR(back[99] / limit, 0, 0.02);
-    EXPECT_NEAR(back[199] / limit, 1, 0.02);
-    EXPECT_NEAR(forth.back() / limit, -1, 1e-3);
+    const double slip = ShearedGrain::slip(), limit = friction * ShearedGrain::weight();
+    double expected = 0;
+    for (const auto& [distance, steps] :
+         {std::pair(0.5, 20), {-0.5, 20}, {3.0, 300}, {-6.0, 600}, {6.0, 600}}) {
+        const auto forces = grain.shear(distance * slip, steps);
+        for (std::size_t step = 0; step < forces.size(); ++step) {
+            expected = std::clamp(expected - distance / steps * limit, -limit, limit);
+            EXPECT_NEAR(forces[step], expected, 1e-3 * std::abs(expected) + 1e-4 * limit)
+                << distance << ", step " << step;
+        }
+        if (distance == 0.5) {
+            EXPECT_NEAR(forces[0] / expected * steps, 1, 1e-3) << "the first step";
+        }
+    }
 }
 
 }  // namespace

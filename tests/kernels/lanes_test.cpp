@@ -18,34 +18,16 @@ std::vector<float> by_lanes(const std::string& text, const std::vector<float>& x
         "const slots index = LOAD_LANES(all_index + first);\nlanes result;\n" +
             text + "\nSTORE_LANES(result, out + first);\n}",
         kernels);
-    struct X;
-    struct Index;
-    struct Rows;
-    struct Out;
     std::vector<float> field(4 * grains);
-    for (std::size_t i = 0; i < field.size(); ++i) field[i] = static_cast<float>(i);
-    mcdem::Field<X> from(device(), x.size(), sizeof(float));
-    mcdem::Field<Index> at(device(), index.size(), sizeof(int));
-    mcdem::Field<Rows> rows(device(), grains, 4 * sizeof(float));
-    mcdem::Field<Out> to(device(), x.size(), sizeof(float));
-    from.write(x.data());
-    at.write(index.data());
-    rows.write(field.data());
-    mcdem::Kernel<mcdem::Field<X>, mcdem::Field<Index>, mcdem::Field<Rows>, mcdem::Field<Out>>(
-        device(), program, "by_lanes", 1)(x.size() / static_cast<std::size_t>(kernels.lanes), from, at, rows,
-                                          to);
-    std::vector<float> out(x.size());
-    to.read(out.data());
-    return out;
+    std::iota(field.begin(), field.end(), 0.0F);
+    const Buffer out = room_for<float>(x.size());
+    launch(program, "by_lanes", 1, x.size() / static_cast<std::size_t>(kernels.lanes), uploaded(x),
+           uploaded(index), uploaded(field), out);
+    return downloaded<float>(out);
 }
 
-class Lanes : public testing::TestWithParam<bool> {
+class Lanes : public InBothLayouts {
 protected:
-    void SetUp() override {
-        if (!GetParam()) return;
-        SKIP_WITHOUT_OTHER_WAY();
-        kernels = other_way(kernels);
-    }
     Lanes() {
         Uniform uniform(8);
         for (int i = 0; i < numbers; ++i) {
@@ -60,7 +42,6 @@ protected:
             EXPECT_NEAR(found[i], expected(x[i], index[i]), tolerance * std::abs(expected(x[i], index[i])))
                 << text << ", number " << i;
     }
-    KernelBuild kernels = build(Precision::single_precision);
     std::vector<float> x;
     std::vector<int> index;
 };

@@ -24,15 +24,22 @@ std::vector<float> stored(const std::string& body, const KernelBuild& kernels) {
         {}, motions(), 3, 3, kernels);
 }
 
-TEST(MotionState, IsLoadedAndStoredByIndex) {
+/// Expects number q of each grain at `place(grain)` of the result to be that of the motion `from(grain, q)`.
+void expect_stored(const std::string& body, int (*place)(int), int (*from)(int, int)) {
     const auto in = motions();
     for (const KernelBuild& way : all_ways(build(Precision::single_precision))) {
-        const auto found = stored("store_motion(m, to, 3 * grain);", way);
+        const auto found = stored(body, way);
         for (int grain = 0; grain < grains; ++grain)
             for (int q = 0; q < reals; ++q)
-                EXPECT_EQ(found[3 * grain * reals + q], in[(252 - 4 * grain) * reals + q])
+                EXPECT_EQ(found[place(grain) * reals + q], in[from(grain, q) * reals + q])
                     << grain << ' ' << q;
     }
+}
+
+TEST(MotionState, IsLoadedAndStoredByIndex) {
+    expect_stored(
+        "store_motion(m, to, 3 * grain);", [](int grain) { return 3 * grain; },
+        [](int grain, int) { return 252 - 4 * grain; });
 }
 
 // kernels/README.md: position and radius, velocity and excess compliance, angular velocity and species.
@@ -46,29 +53,17 @@ TEST(MotionState, HasItsMembersInTheOrderOfTheField) {
             "for (int lane = 0; lane < LANES; ++lane) out[(first + lane) * {} + {}] = LANE(real, m.{}, "
             "lane);\n",
             reals, q, members[q]);
-    const auto in = motions();
-    for (const KernelBuild& way : all_ways(build(Precision::single_precision))) {
-        const auto found = stored(body, way);
-        for (int grain = 0; grain < grains; ++grain)
-            for (int q = 0; q < reals; ++q)
-                EXPECT_EQ(found[grain * reals + q], in[(252 - 4 * grain) * reals + q]) << members[q];
-    }
+    expect_stored(
+        body, [](int grain) { return grain; }, [](int grain, int) { return 252 - 4 * grain; });
 }
 
 // Radius, excess compliance and species do not change in a step; they are those of the second motion.
 TEST(MotionState, IsChosenGrainByGrain) {
-    const auto in = motions();
-    for (const KernelBuild& way : all_ways(build(Precision::single_precision))) {
-        const auto found = stored(
-            "const Moving other = load_motion((global const Motion*)in, grain);\n"
-            "store_motion(chosen_motion(AS_MASK(grain % 3 == 0), m, other), to, grain);",
-            way);
-        for (int grain = 0; grain < grains; ++grain)
-            for (int q = 0; q < reals; ++q) {
-                const int from = grain % 3 == 0 && q % 4 != 3 ? 252 - 4 * grain : grain;
-                EXPECT_EQ(found[grain * reals + q], in[from * reals + q]) << grain << ' ' << q;
-            }
-    }
+    expect_stored(
+        "const Moving other = load_motion((global const Motion*)in, grain);\n"
+        "store_motion(chosen_motion(AS_MASK(grain % 3 == 0), m, other), to, grain);",
+        [](int grain) { return grain; },
+        [](int grain, int q) { return grain % 3 == 0 && q % 4 != 3 ? 252 - 4 * grain : grain; });
 }
 
 }  // namespace

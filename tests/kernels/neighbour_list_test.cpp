@@ -243,9 +243,10 @@ TEST(NeighbourList, HoldsATiltedPlate) {
 }
 
 /// A loose cluster whose grains move past each other by about a radius.
-Start mixing(FrictionLaw law, ContactModel model) {
+Start mixing(FrictionLaw law, ContactModel model, const mcdem::Effects& effects = {}) {
     Replica replica = test_replica(model);
     replica.contact.friction_law = law;
+    replica.effects = effects;
     replica.numerics.skin = 0.05;
     Start start = jittered_lattice(replica, 27, 31);
     start.replica.box.size_x *= 1.1;
@@ -254,9 +255,8 @@ Start mixing(FrictionLaw law, ContactModel model) {
 
 // Lists are rebuilt many times; a value that moved to the wrong neighbour would change the next forces. The
 // motion is chaotic: rounding errors of 1e-16 grow by a factor of a few hundred, but not to 1e-9.
-template <class Expected>
 void expect_memory_moves_with_neighbours(const Start& start, const char* quantity, double size,
-                                         Expected expected, std::size_t stored_row = 0) {
+                                         double (*expected)(const Memory&), std::size_t stored_row) {
     const KernelBuild kernels = build(Precision::double_precision);
     Batch batch(kernels, start);
     Uniform uniform(5);
@@ -340,45 +340,44 @@ TEST(NeighbourList, IntervalsEndBeforeThePlateLeavesTheMargin) {
     EXPECT_EQ(batch.engine().max_interval(0, {}), 60);
 }
 
-TEST(NeighbourList, SurfaceDisplacementsMoveWithTheirNeighbours) {
-    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
-    expect_memory_moves_with_neighbours(mixing(FrictionLaw::saturated, ContactModel::mc_dem), "displacement",
-                                        0.01, [](const Memory& memory) { return memory.predicted; });
-}
+/// A value that a slot keeps between steps, where it is stored, and its size.
+struct Kept {
+    const char* what;
+    FrictionLaw law;
+    mcdem::Effects effects;
+    double size, (*of)(const Memory&);
+    std::size_t row = 0;
+};
 
-TEST(NeighbourList, SpringsMoveWithTheirNeighbours) {
+TEST(NeighbourList, MemoryMovesWithItsNeighbours) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
-    expect_memory_moves_with_neighbours(mixing(FrictionLaw::mindlin, ContactModel::independent),
-                                        "contact_memory", 0.1,
-                                        [](const Memory& memory) { return memory.spring.x(); });
     expect_memory_moves_with_neighbours(
-        mixing(FrictionLaw::mindlin, ContactModel::independent), "contact_memory", 0.01,
-        [](const Memory& memory) { return memory.contact_radius; }, 3);
-}
-
-TEST(NeighbourList, DeepestOverlapsMoveWithTheirNeighbours) {
-    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
-    Start start = mixing(FrictionLaw::saturated, ContactModel::independent);
-    start.replica.effects.plasticity = 0.3;
-    expect_memory_moves_with_neighbours(start, "contact_memory", 0.01,
-                                        [](const Memory& memory) { return memory.deepest; });
-}
-
-TEST(NeighbourList, RelaxedForcesMoveWithTheirNeighbours) {
-    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
-    Start start = mixing(FrictionLaw::saturated, ContactModel::independent);
-    start.replica.effects.viscoelasticity = 0.5;
-    start.replica.effects.relaxation_time = 3e-3;
-    expect_memory_moves_with_neighbours(start, "contact_memory", 0.1,
-                                        [](const Memory& memory) { return memory.relaxed; });
-}
-
-TEST(NeighbourList, RollingSpringsMoveWithTheirNeighbours) {
-    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
-    Start start = mixing(FrictionLaw::saturated, ContactModel::independent);
-    start.replica.effects.rolling_resistance = 0.3;
-    expect_memory_moves_with_neighbours(
-        start, "contact_memory", 1e-3, [](const Memory& memory) { return memory.rolling.x(); }, 1);
+        mixing(FrictionLaw::saturated, ContactModel::mc_dem), "displacement", 0.01,
+        [](const Memory& memory) { return memory.predicted; }, 0);
+    const Kept all[] = {
+        {"spring", FrictionLaw::mindlin, {}, 0.1, [](const Memory& m) { return m.spring.x(); }},
+        {"radius", FrictionLaw::mindlin, {}, 0.01, [](const Memory& m) { return m.contact_radius; }, 3},
+        {"deepest overlap",
+         FrictionLaw::saturated,
+         {.plasticity = 0.3},
+         0.01,
+         [](const Memory& m) { return m.deepest; }},
+        {"relaxed force",
+         FrictionLaw::saturated,
+         {.viscoelasticity = 0.5, .relaxation_time = 3e-3},
+         0.1,
+         [](const Memory& m) { return m.relaxed; }},
+        {"rolling spring",
+         FrictionLaw::saturated,
+         {.rolling_resistance = 0.3},
+         1e-3,
+         [](const Memory& m) { return m.rolling.x(); },
+         1}};
+    for (const Kept& kept : all) {
+        SCOPED_TRACE(kept.what);
+        expect_memory_moves_with_neighbours(mixing(kept.law, ContactModel::independent, kept.effects),
+                                            "contact_memory", kept.size, kept.of, kept.row);
+    }
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ public:
     SavedRows(Batch& batch, const KernelBuild& build, const std::vector<Start>& starts)
         : build_(build),
           saved_(batch.engine().save()),
-          layout_(mcdem::make_layout(packings(starts), build.block())) {
+          layout_(mcdem::make_layout(each(starts, &Start::packing), build.block())) {
         partner_ = saved_values<int>(saved_, "partner");
     }
 
@@ -77,11 +77,6 @@ public:
     bool rebuilding(int replica) const { return saved_values<char>(saved_, "rebuild")[replica] != 0; }
 
 private:
-    static std::vector<Packing> packings(const std::vector<Start>& starts) {
-        std::vector<Packing> all;
-        for (const auto& start : starts) all.push_back(start.packing);
-        return all;
-    }
     KernelBuild build_;
     std::map<std::string, std::vector<std::byte>> saved_;
     mcdem::Layout layout_;

@@ -121,21 +121,10 @@ std::vector<float> pair_quantities(const std::vector<float>& radii, KernelBuild 
     const auto constants =
         mcdem::device_replica<mcdem::f32::Replica>(start.replica, start.packing, {0, 8, 0});
     const auto kept = mcdem::device_materials<mcdem::f32::Material>({start.replica}, kernels.species);
-    struct Radii;
-    struct Quantities;
-    mcdem::Field<mcdem::Constants> replica(device(), 1, sizeof constants);
-    mcdem::Field<mcdem::Materials> material(device(), kept.size(), sizeof kept[0]);
-    mcdem::Field<Radii> in(device(), radii.size(), sizeof(float));
-    mcdem::Field<Quantities> out(device(), radii.size() / 2 * numbers, sizeof(float));
-    replica.write(&constants);
-    material.write(kept.data());
-    in.write(radii.data());
-    mcdem::Kernel<mcdem::Field<mcdem::Constants>, mcdem::Field<mcdem::Materials>, mcdem::Field<Radii>,
-                  mcdem::Field<Quantities>>(device(), with_kernel(pair_kernel, kernels), "see_pairs", 1)(
-        radii.size() / 2, replica, material, in, out);
-    std::vector<float> found(radii.size() / 2 * numbers);
-    out.read(found.data());
-    return found;
+    const Buffer out = room_for<float>(radii.size() / 2 * numbers);
+    launch(with_kernel(pair_kernel, kernels), "see_pairs", 1, radii.size() / 2, uploaded(constants),
+           uploaded(kept), uploaded(radii), out);
+    return downloaded<float>(out);
 }
 
 void expect_same_from_both_sides(const Replica& scene, double overlap) {

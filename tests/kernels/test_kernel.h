@@ -8,36 +8,71 @@
 
 namespace reference {
 
-/// In single precision. `text` may use LANE(type, value, i): element i modulo LANES of a vector.
+/// `text` may use LANE(type, value, i): element i modulo LANES of a vector.
 inline cl::Program with_kernel(const std::string& text, const KernelBuild& kernels) {
     const std::string lane = "\n#define LANE(type, value, i) (((const type*)&(value))[(i) % LANES])\n";
     cl::Program program(device().context(), mcdem::program_text() + lane + text);
     program.build(
         {device().handle()},
-        fmt::format("-w -cl-std=CL1.2 -DMCDEM_DOUBLE=0 -DLANES={} -DSLOTS={} -DBLOCK={} -DLIST_ITEMS=16",
-                    kernels.lanes, kernels.slots, kernels.block())
+        fmt::format("-w -cl-std=CL1.2 -DMCDEM_DOUBLE={:d} -DLANES={} -DSLOTS={} -DBLOCK={} -DLIST_ITEMS=16",
+                    kernels.precision == Precision::double_precision, kernels.lanes, kernels.slots,
+                    kernels.block())
             .c_str());
     return program;
+}
+
+struct Anything;
+/// Memory of the device that a kernel of a test reads or writes.
+using Buffer = mcdem::Field<Anything>;
+
+template <class T>
+Buffer uploaded(const std::vector<T>& values) {
+    Buffer buffer(device(), values.size(), sizeof(T));
+    buffer.write(values.data());
+    return buffer;
+}
+template <class T>
+Buffer uploaded(const T& value) {
+    return uploaded(std::vector<T>{value});
+}
+/// Room for `count` results, which are zero.
+template <class T>
+Buffer room_for(std::size_t count) {
+    return {device(), count, sizeof(T)};
+}
+template <class T>
+std::vector<T> downloaded(const Buffer& buffer) {
+    std::vector<T> values(buffer.bytes() / sizeof(T));
+    buffer.read(values.data());
+    return values;
+}
+
+/// Runs a kernel in `groups` work-groups.
+template <class... Buffers>
+void launch(const cl::Program& program, const char* name, int work_items, std::size_t groups,
+            const Buffers&... buffers) {
+    mcdem::Kernel<Buffers...>(device(), program, name, work_items)(groups, buffers...);
 }
 
 /// Runs a kernel with the arguments replica, `in` and its result, which has `out` numbers.
 inline std::vector<float> mapped(const cl::Program& program, const char* name, int work_items,
                                  std::size_t groups, const mcdem::f32::Replica& replica,
                                  const std::vector<float>& in, std::size_t out) {
-    struct Replicas;
-    struct In;
-    struct Out;
-    mcdem::Field<Replicas> of(device(), 1, sizeof replica);
-    mcdem::Field<In> from(device(), in.size(), sizeof(float));
-    mcdem::Field<Out> to(device(), out, sizeof(float));
-    of.write(&replica);
-    from.write(in.data());
-    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<In>, mcdem::Field<Out>>(
-        device(), program, name, work_items)(groups, of, from, to);
-    std::vector<float> found(out);
-    to.read(found.data());
-    return found;
+    const Buffer to = room_for<float>(out);
+    launch(program, name, work_items, groups, uploaded(replica), uploaded(in), to);
+    return downloaded<float>(to);
 }
+
+/// A test in the layout of the device and in the other one.
+class InBothLayouts : public testing::TestWithParam<bool> {
+protected:
+    void SetUp() override {
+        if (!GetParam()) return;
+        SKIP_WITHOUT_OTHER_WAY();
+        kernels = other_way(kernels);
+    }
+    KernelBuild kernels = build(Precision::single_precision);
+};
 
 /// Applies the OpenCL code `body` to rows of numbers, one work-item per row: it reads `in`, writes `out`,
 /// and can use `replica`. `in` has a multiple of `read` numbers; the result has `written` numbers per row.

@@ -35,9 +35,12 @@ class Diagnoses(unittest.TestCase):
         subprocess.run([PROGRAM, *words], cwd=cls.folder, check=True, capture_output=True)
 
     def test_equals_the_file_and_the_program(self):
+        """Notes of the program are warnings: here that the experiment states another modulus than the scene."""
         told = []
-        said = mcdem.diagnose(self.scene, self.folder / "measured", self.folder / "out", **{**FEW, "page": True},
-                              progress=lambda stage, fraction: told.append((stage, fraction)))
+        stiffer = mcdem.Scene(SMALL, contact={"model": "elastic_sphere"}, grains={"youngs_modulus": 3e4})
+        with self.assertWarnsRegex(RuntimeWarning, r"experiment.toml states grains.youngs_modulus = .* \(scene: 30000\)"):
+            said = mcdem.diagnose(stiffer, self.folder / "measured", self.folder / "out", **{**FEW, "page": True}, refine=1,
+                                  progress=lambda stage, fraction: told.append((stage, fraction)))
         self.assertIn("diagnosis", (self.folder / "out/diagnosis.html").read_text().lower())
         self.assertEqual(said, json.loads((self.folder / "out/diagnosis.json").read_text()))
         self.assertIn(said["verdict"], ("no_gap", "effect", "group", "unknown_effect", "not_converged",
@@ -45,20 +48,13 @@ class Diagnoses(unittest.TestCase):
         self.assertEqual({one["effect"] for one in said["ranking"]},
                          {"adhesion", "friction", "modulus", "strain_offset"})  # both candidates, and the nuisances
         self.assertIn("library", {stage for stage, _ in told})
-        (self.folder / "scene.toml").write_text(self.scene.text)
+        (self.folder / "scene.toml").write_text(stiffer.text)
         self.program("diagnose", "scene.toml", "--experiment", "measured", "--out", "out", "--candidates",
-                     "adhesion,friction", "--replicates", "8", "--pairs", "2", "--confirmations", "2")
+                     "adhesion,friction", "--replicates", "8", "--pairs", "2", "--confirmations", "2", "--refine", "1")
         other = json.loads((self.folder / "out/diagnosis.json").read_text())
         for varying in ("seconds", "provenance"):
             del said[varying], other[varying]
         self.assertEqual(said, other)
-
-    def test_notes_are_warnings(self):
-        stiffer = mcdem.Scene(SMALL, contact={"model": "elastic_sphere"}, grains={"youngs_modulus": 3e4})
-        with self.assertWarnsRegex(RuntimeWarning, r"experiment.toml states grains.youngs_modulus = .* \(scene: 30000\)"):
-            mcdem.diagnose(stiffer, self.folder / "measured", self.folder / "stiffer", refine=1, **FEW)
-        with self.assertRaisesRegex(ValueError, "refine: must be between 1 and 64, got 0.5"):
-            mcdem.diagnose(stiffer, self.folder / "measured", self.folder / "stiffer", refine=0.5, **FEW)
 
     def test_exports_a_run(self):
         view = self.folder / "view"
@@ -85,6 +81,8 @@ class Diagnoses(unittest.TestCase):
     def test_bad_input(self):
         with self.assertRaisesRegex(ValueError, "replicates: must be 8 or more, got 1\npairs: must be 2 or more"):
             mcdem.diagnose(self.scene, self.folder / "measured", self.folder / "bad", replicates=1, pairs=1)
+        with self.assertRaisesRegex(ValueError, "refine: must be between 1 and 64, got 0.5"):
+            mcdem.diagnose(self.scene, self.folder / "measured", self.folder / "bad", refine=0.5, **FEW)
         with self.assertRaisesRegex(ValueError, "nowhere"):
             mcdem.diagnose(self.scene, self.folder / "nowhere", self.folder / "bad")
         with self.assertRaisesRegex(ValueError, "gremlins"):

@@ -3,14 +3,13 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import textwrap
 import unittest
 import mcdem
-from small import SMALL
+from small import SMALL, Folder
 
 
-class Hostile(unittest.TestCase):
+class Hostile(Folder):
     def test_comparisons_need_runs(self):
         run = mcdem.simulate(mcdem.Scene(SMALL))
         for one, reference in ((None, run), (run, None), (run, 5)):
@@ -22,26 +21,23 @@ class Hostile(unittest.TestCase):
             mcdem.Scene.parse("", set={"grains.friction": range(10**9)})
 
     def test_stress_of_grains_needs_positions(self):
-        with tempfile.TemporaryDirectory() as folder:
-            mcdem.run(mcdem.Scene(SMALL, output={"positions": False}), folder + "/bare")
-            mcdem.run(mcdem.Scene(SMALL), folder + "/whole")
-            for run in (mcdem.read(folder + "/bare"), mcdem.read(folder + "/whole", what="contacts")):
-                with self.assertRaisesRegex(ValueError, "needs the grains' positions"):
-                    run[0].grain_stress(2)
-            with self.assertRaisesRegex(ValueError, "needs the contacts"):
-                mcdem.read(folder + "/whole", what="positions")[0].grain_stress(2)
+        mcdem.run(mcdem.Scene(SMALL, output={"positions": False}), self.folder / "bare")
+        mcdem.run(mcdem.Scene(SMALL), self.folder / "whole")
+        for run in (mcdem.read(self.folder / "bare"), mcdem.read(self.folder / "whole", what="contacts")):
+            with self.assertRaisesRegex(ValueError, "needs the grains' positions"):
+                run[0].grain_stress(2)
+        with self.assertRaisesRegex(ValueError, "needs the contacts"):
+            mcdem.read(self.folder / "whole", what="positions")[0].grain_stress(2)
 
     def test_paths_that_are_no_utf8_are_read(self):
-        with tempfile.TemporaryDirectory() as folder:
-            name = os.path.join(os.fsencode(folder), b"caf\xe9")
-            os.mkdir(name)
-            with open(name + b"/grain.csv", "w", encoding="ascii") as out:
-                out.write("x_m,y_m,z_m,diameter_m\n0.03,0.03,0.01,0.02\n")
-            with open(name + b"/scene.toml", "w", encoding="ascii") as out:
-                out.write('[box]\nsize_x = 0.06\nsize_y = 0.06\n[packing]\nfile = "grain.csv"\n[plate]\nstart = 0.022\nend = 0.021\n'
-                          "[protocol]\nscans_per_stroke = 1\nrelax_time = 0.001\nsettle_time = 0.001\n")
-            run = mcdem.simulate(mcdem.Scene.read(os.fsdecode(name + b"/scene.toml")))
-            self.assertIn(os.fsdecode(name), run[0].parameters["packing.file"])
+        folder = self.folder / os.fsdecode(b"caf\xe9")
+        folder.mkdir()
+        (folder / "grain.csv").write_text("x_m,y_m,z_m,diameter_m\n0.03,0.03,0.01,0.02\n")
+        (folder / "scene.toml").write_text(
+            '[box]\nsize_x = 0.06\nsize_y = 0.06\n[packing]\nfile = "grain.csv"\n[plate]\nstart = 0.022\nend = 0.021\n'
+            "[protocol]\nscans_per_stroke = 1\nrelax_time = 0.001\nsettle_time = 0.001\n")
+        run = mcdem.simulate(mcdem.Scene.read(folder / "scene.toml"))
+        self.assertIn(str(folder), run[0].parameters["packing.file"])
 
     def in_fresh_python(self, code):
         """Output of the code in a new interpreter."""

@@ -1,12 +1,10 @@
 """The Python module: scenes, runs, arrays and errors."""
 import gc
 import os
-import pathlib
 import pickle
 import re
 import signal
 import sys
-import tempfile
 import threading
 import time
 import unittest
@@ -17,14 +15,7 @@ import h5py
 import numpy as np
 
 import mcdem
-from small import MODELS, SMALL
-
-
-class Folder(unittest.TestCase):
-    def setUp(self):
-        kept = tempfile.TemporaryDirectory(prefix="mcdem-python-")
-        self.addCleanup(kept.cleanup)
-        self.folder = pathlib.Path(kept.name)
+from small import MODELS, SMALL, Folder
 
 
 class Scenes(Folder):

@@ -223,13 +223,38 @@ inline Start caged_cluster(Replica replica, double compression, double jitter, u
     return {replica, packing};
 }
 
+/// One grain of 10 mm radius in the middle of a box with rigid walls without friction, at these distances
+/// from the centre over the radius.
+inline Start held_grain(ContactModel model, double poisson_ratio, double restitution,
+                        const Vec3& half_width) {
+    constexpr double radius = 0.01;
+    Replica replica;
+    replica.grains = {1e5, poisson_ratio, 1000, 0, 0, restitution, 0};
+    replica.walls = {1e13, 0.5, 0, restitution};
+    replica.contact.model = model;
+    replica.contact.gamma = 1.125;
+    replica.numerics.probe_gap = 0.3;
+    replica.box = {2 * radius * half_width.x(), 2 * radius * half_width.y()};
+    replica.plate.start = 2 * radius * half_width.z();
+    return {replica, {{radius * half_width}, {2 * radius}}};
+}
+
 inline Precision finest() { return has_double() ? Precision::double_precision : Precision::single_precision; }
+
+/// The replicas or the packings of several starts.
+template <class Member>
+std::vector<Member> each(const std::vector<Start>& starts, Member Start::*member) {
+    std::vector<Member> all;
+    for (const Start& start : starts) all.push_back(start.*member);
+    return all;
+}
 
 /// An engine with several replicas; the plates are at rest at plate.start.
 class Batch {
 public:
     Batch(const KernelBuild& build, const std::vector<Start>& starts)
-        : engine_(device(), build, replicas(starts), packings(starts)), starts_(starts) {}
+        : engine_(device(), build, each(starts, &Start::replica), each(starts, &Start::packing)),
+          starts_(starts) {}
     explicit Batch(const KernelBuild& build, const Start& start) : Batch(build, std::vector<Start>{start}) {}
 
     Engine& engine() { return engine_; }
@@ -256,16 +281,6 @@ public:
     }
 
 private:
-    static std::vector<Replica> replicas(const std::vector<Start>& starts) {
-        std::vector<Replica> all;
-        for (const auto& start : starts) all.push_back(start.replica);
-        return all;
-    }
-    static std::vector<Packing> packings(const std::vector<Start>& starts) {
-        std::vector<Packing> all;
-        for (const auto& start : starts) all.push_back(start.packing);
-        return all;
-    }
     Engine engine_;
     std::vector<Start> starts_;
 };
