@@ -92,15 +92,16 @@ void bind_variants(py::class_<Scene>& type) {
             "_texts",
             [](const Scene& scene) {
                 py::dict all;
-                for (const auto& [key, text] : values_of_keys(scene)) all[py::str(key)] = python_text(text);
+                for (const auto& [key, value] : values_of_keys(scene))
+                    all[py::str(key)] = python_text(parameter_text(value));
                 return all;
             },
             "Every key of the first replica with its value as text, in the order of the reference.")
         .def_property_readonly(
             "_values",
             [](const Scene& scene) {
-                const auto texts = values_of_keys(scene);
-                return typed_parameters({texts.begin(), texts.end()});
+                const auto values = values_of_keys(scene);
+                return parameter_dict({values.begin(), values.end()});
             },
             "The same as numbers, truths and texts; None for what is not given.")
         .def(
@@ -114,8 +115,12 @@ void bind_variants(py::class_<Scene>& type) {
             "_variant",
             [](const Scene& scene, const py::dict& values) { return variant_of(scene, key_values(values)); },
             py::arg("values"), "The first replica with other values of keys, without checks of ranges.")
-        .def("_with_programme", &with_programme, py::arg("parameters"),
-             "With the programme of a recording's parameters; none: strokes.")
+        .def(
+            "_with_programme",
+            [](const Scene& scene, const ParameterTexts& parameters) {
+                return with_programme(scene, parameters_of(parameters));
+            },
+            py::arg("parameters"), "With the programme of a recording's parameters; none: strokes.")
         .def("_with_box", [](const Scene& scene, const std::string& shape, double size_x, double size_y) {
             Scene changed = scene;
             for (Replica& replica : changed.replicas)

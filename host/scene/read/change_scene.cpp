@@ -50,17 +50,17 @@ Settings settings_of(const Scene& run, const Replica& replica) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> values_of_keys(const Scene& scene) {
+std::vector<std::pair<std::string, Parameter>> values_of_keys(const Scene& scene) {
     const Replica& replica = scene.replicas.front();
     Settings settings = settings_of(scene, replica);
     settings.cylinder_radius = Settings().cylinder_radius;  // the sizes of the box have them
     settings.cell_height = not_given;
-    std::vector<std::pair<std::string, std::string>> texts;
+    std::vector<std::pair<std::string, Parameter>> values;
     for (const Key& key : keys())
         if (key.scope == Scope::replica || key.name == "numerics.precision")
-            texts.emplace_back(key.name, value_text(key, settings));
-    for (const auto& stage : programme_parameters(replica.programme)) texts.emplace_back(stage);
-    return texts;
+            values.emplace_back(key.name, value_of(key, settings));
+    for (const auto& stage : programme_parameters(replica.programme)) values.emplace_back(stage);
+    return values;
 }
 
 Scene variant_of(const Scene& scene, const std::map<std::string, std::string>& values) {
@@ -81,7 +81,7 @@ Scene variant_of(const Scene& scene, const std::map<std::string, std::string>& v
     return variant;
 }
 
-Scene with_programme(const Scene& scene, const std::map<std::string, std::string>& parameters) {
+Scene with_programme(const Scene& scene, const Parameters& parameters) {
     Scene changed = scene;
     for (Replica& replica : changed.replicas) {
         std::erase_if(replica.parameters,

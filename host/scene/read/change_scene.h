@@ -16,9 +16,9 @@ namespace mcdem::inline scene {
 /// change.
 Scene with_changes(const Scene& scene, const std::map<std::string, std::string>& values);
 
-/// Every key of the first replica with its value as text, in the order of the table, and the precision; then
-/// those of its programme.
-std::vector<std::pair<std::string, std::string>> values_of_keys(const Scene& scene);
+/// Every key of the first replica with its value, in the order of the table, and the precision; then those of
+/// its programme.
+std::vector<std::pair<std::string, Parameter>> values_of_keys(const Scene& scene);
 
 /// The first replica with these values, as TOML text, of any keys but those of packing and batch, which have
 /// no effect. Nothing is checked but that keys exist and values have their type: a simulation may leave the
@@ -27,6 +27,6 @@ std::vector<std::pair<std::string, std::string>> values_of_keys(const Scene& sce
 Scene variant_of(const Scene& scene, const std::map<std::string, std::string>& values);
 
 /// The scene with the programme in a recording's parameters; none: strokes.
-Scene with_programme(const Scene& scene, const std::map<std::string, std::string>& parameters);
+Scene with_programme(const Scene& scene, const Parameters& parameters);
 
 }  // namespace mcdem::scene
