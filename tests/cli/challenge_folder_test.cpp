@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "cli/tiny_challenge.h"
-#include "core/sha256.h"
 #include "io/result_folder.h"
 
 namespace mcdem {
@@ -17,27 +16,28 @@ const char* const alone = "another program is writing there: wait for it";
 const char* const not_shared = "another program is writing there alone, which cannot be shared";
 const char* const shared = "other programs share work there: wait for them";
 
+const std::string make_one =
+    "challenge make tiny.toml --none 1 --pairs 0 --per-effect 0 --unknown 0 --outside 0 --packings 2 --out ";
+
 class ChallengeFolderTest : public CliTest {
 protected:
     void SetUp() override {
         NEEDS_PYTHON_MODULE();
         write_tiny_scene(folder_.path);
-        expect_done(mcdem({"challenge", "make", "tiny.toml", "--out", "challenge", "--effects",
-                           "friction,force_bias", "--none", "1", "--pairs", "0", "--per-effect", "0",
-                           "--unknown", "0", "--outside", "0", "--packings", "2"}));
+        expect_done(make_one + "challenge --effects friction,force_bias");
     }
-    static Words challenge_words(const Words& more = {}) {
-        Words words = run_challenge_words;
+    static Words challenge_words(const std::string& more = "") {
+        Words words = with(run_challenge_words, more);
         *(std::ranges::find(words, "--out") + 1) = "out";
-        words.insert(words.end(), more.begin(), more.end());
         return words;
     }
     /// A challenge that is blocked in the middle and holds its folder until released.
-    std::unique_ptr<Child> held_challenge(const Words& more = {}) const {
+    std::unique_ptr<Child> held_challenge(const std::string& more = "") const {
         auto child = std::make_unique<Child>(folder_.path, challenge_words(more), held_after(100));
         wait_until_held(*child);
         return child;
     }
+    using CliTest::expect_refused;
     void expect_refused(const Words& words, const std::string& problem) const {
         expect_bad_input(mcdem(words), problem);
     }
@@ -48,7 +48,7 @@ TEST_F(ChallengeFolderTest, ASecondProcessIsRefusedWhileOneAnswers) {
     expect_refused(challenge_words(), alone);
     expect_refused(run_words("out"), alone);
     for (const char* how : {"--part=1/2", "--merge"}) {
-        expect_refused(challenge_words({how}), not_shared);
+        expect_refused(challenge_words(how), not_shared);
         expect_refused(run_words("out", {how}), not_shared);
     }
     let_go_on(*one);
@@ -59,18 +59,15 @@ TEST_F(ChallengeFolderTest, ASecondProcessIsRefusedWhileOneAnswers) {
 }
 
 TEST_F(ChallengeFolderTest, OnlyOneProcessMakesAChallenge) {
-    const Words words{"challenge", "make",      "tiny.toml", "--out",        "other", "--none",
-                      "1",         "--pairs",   "0",         "--per-effect", "0",     "--unknown",
-                      "0",         "--outside", "0",         "--packings",   "2"};
-    Child one(folder_.path, words, held_after(100));
+    Child one(folder_.path, split(make_one + "other"), held_after(100));
     wait_until_held(one);
-    expect_refused(words, alone);
+    expect_refused(make_one + "other", alone);
     expect_refused(run_words("other"), alone);
     let_go_on(one);
     expect_done(one.wait());
 }
 
-TEST_F(ChallengeFolderTest, NothingIsWrittenOutsideTheFolder) {
+TEST_F(ChallengeFolderTest, NothingIsWrittenOutsideTheFolderOrBeforeItIsComplete) {
     const std::string challenge = bytes_of_file(path("challenge/challenge.json"));
     for (const std::string& name :
          {path("config").string(), std::string("../config"), std::string("case_1/../../config"),
@@ -81,53 +78,13 @@ TEST_F(ChallengeFolderTest, NothingIsWrittenOutsideTheFolder) {
         expect_refused(challenge_words(), "challenge.json: folder must be a name such as case_0001");
         EXPECT_FALSE(fs::exists(path("out")));
     }
-}
-
-TEST_F(ChallengeFolderTest, CannotBeAnsweredBeforeItIsComplete) {
+    std::ofstream(path("challenge/challenge.json")) << challenge;
     fs::remove(path("challenge/case_0001/experiment.toml"));
     expect_refused(challenge_words(), "challenge: case_0001 is not made yet");
 }
 
-TEST_F(ChallengeFolderTest, OtherFilesAreNotTakenAsCases) {
-    fs::create_directories(path("other/case_0001"));
-    std::ofstream(path("other/case_0001/contacts.csv")) << "measured";
-    Words words{"challenge", "make",      "tiny.toml", "--out",        "other", "--none",
-                "1",         "--pairs",   "0",         "--per-effect", "0",     "--unknown",
-                "0",         "--outside", "0",         "--packings",   "2"};
-    expect_refused(words, "case_0001: is there without a challenge.json beside it, and is not replaced");
-    EXPECT_EQ(bytes_of_file(path("other/case_0001/contacts.csv")), "measured");
-    words.insert(words.end(), {"--truth", "other/../other/challenge.json"});
-    expect_refused(words, "give another file for the truth");
-    words.back() = "small.toml";
-    expect_refused(words, "not the truth of a challenge");
-    EXPECT_EQ(bytes_of_file(path("small.toml")), small_scene_text);
-}
-
-TEST_F(ChallengeFolderTest, ALibraryOfAnotherSceneIsRefusedBeforeAnyWork) {
-    Words words = challenge_words();
-    expect_done(mcdem(words));
-    auto library = nlohmann::json::parse(bytes_of_file(path("library.json")));
-    for (const auto& [option, value] : {std::pair{"--out", "second"}, {"--library", "changed.json"}})
-        *(std::ranges::find(words, option) + 1) = value;
-    library.erase("sha256");  // as before the content is changed
-    library["origin"]["grains.friction"] = "0.9";
-    std::string origin;
-    for (const auto& [name, value] : library["origin"].items())
-        origin += name + "=" + value.get<std::string>() + "\n";
-    library["origin_sha256"] = Sha256().add(origin).hex();
-    std::ofstream(path("changed.json")) << library;
-    expect_refused(words, "changed.json: was made with grains.friction = 0.9, needed is ");
-    *(std::ranges::find(words, "--out") + 1) = "out";
-    fs::remove(path("out/case_0001.json"));
-    library["provenance"]["device"] = "another";
-    library["origin"] = nlohmann::json::parse(bytes_of_file(path("library.json")))["origin"];
-    library["origin_sha256"] = nlohmann::json::parse(bytes_of_file(path("library.json")))["origin_sha256"];
-    std::ofstream(path("changed.json")) << library;
-    expect_refused(words, "out/library.json: is another library than changed.json");
-}
-
 TEST_F(ChallengeFolderTest, ASingleProcessIsRefusedWhileOthersShareTheChallenge) {
-    const auto one = held_challenge({"--part=1/1"});
+    const auto one = held_challenge("--part=1/1");
     expect_refused(challenge_words(), shared);
     expect_refused(run_words("out"), shared);
     expect_refused(run_words("out", {"--part=1/2"}), "holds the diagnoses of a challenge");
@@ -143,31 +100,40 @@ TEST_F(ChallengeFolderTest, AnswersInPartsAreTheSame) {
     *(std::ranges::find(alone, "--library") + 1) = "alone.json";
     expect_done(mcdem(alone));
     int computed = 0;
-    for (std::string missing; !(missing = mcdem(challenge_words({"--missing"})).out).empty();) {
+    for (std::string missing; !(missing = mcdem(challenge_words("--missing")).out).empty();) {
         if (computed == 0) {
             EXPECT_FALSE(missing.starts_with("1/")) << "a case before the library";
-            EXPECT_EQ(mcdem(challenge_words({"--merge"})).exit_code, 1);
+            EXPECT_EQ(mcdem(challenge_words("--merge")).exit_code, 1);
         }
         std::istringstream numbers(missing);
         for (std::string number; numbers >> number; ++computed)
-            expect_done(mcdem(challenge_words({"--part", number})));
+            expect_done(mcdem(challenge_words("--part " + number)));
         ASSERT_LT(computed, 100);
     }
-    expect_done(mcdem(challenge_words({"--merge"})));
+    expect_done(mcdem(challenge_words("--merge")));
     EXPECT_GT(computed, 1);
     EXPECT_EQ(bytes_of_file(path("library.json")), bytes_of_file(path("alone.json")));
     for (const char* file : {"evidence/case_0001.json", "findings/case_0001.json"})
         EXPECT_EQ(bytes_of_file(path("out") / file), bytes_of_file(path("alone") / file));
 }
 
-TEST_F(ChallengeFolderTest, OtherOptionsThanAtTheStartAreRefused) {
-    Words words = challenge_words();
+TEST_F(ChallengeFolderTest, OtherInputsThanAtTheStartAreRefused) {
+    const Words words = challenge_words();
     expect_done(mcdem(words));
-    for (const char* option : {"--replicates", "--confirmations", "--library-packings"}) {
+    const auto changed = [&](const std::string& option, const std::string& value) {
         Words other = words;
-        *(std::ranges::find(other, option) + 1) = "4";
-        expect_refused(other, std::string("out: was begun with another ") + option);
-    }
+        *(std::ranges::find(other, option) + 1) = value;
+        return other;
+    };
+    for (const char* option : {"--replicates", "--confirmations", "--library-packings"})
+        expect_refused(changed(option, "4"), std::string("out: was begun with another ") + option);
+    fs::remove(path("out/case_0001.json"));
+    auto library = nlohmann::json::parse(bytes_of_file(path("library.json")));
+    library.erase("sha256");  // as before the content is changed
+    library["provenance"]["device"] = "another";
+    std::ofstream(path("changed.json")) << library;
+    expect_refused(changed("--library", "changed.json"),
+                   "out/library.json: is another library than changed.json");
     std::ofstream(path("out/manifest.json")) << "{";
     expect_refused(words, "manifest.json: is damaged");
 }
@@ -176,14 +142,14 @@ TEST_F(ChallengeFolderTest, IsRefusedInTheFolderOfARun) {
     {
         const auto run = ResultFolder::create(path("out"));  // as for a run before its first checkpoint
         expect_refused(challenge_words(), alone);
-        for (const char* how : {"--part=1/2", "--merge"}) expect_refused(challenge_words({how}), not_shared);
+        for (const char* how : {"--part=1/2", "--merge"}) expect_refused(challenge_words(how), not_shared);
     }
     {
         const FolderLock worker(path("out"), FolderLock::Use::shared);
         fs::create_directory(parts_folder(path("out")));
         expect_refused(challenge_words(), shared);
         for (const char* how : {"--part=1/2", "--merge"})
-            expect_refused(challenge_words({how}), "holds a run (parts)");
+            expect_refused(challenge_words(how), "holds a run (parts)");
     }
     expect_refused(challenge_words(), "holds a run (parts)");
     EXPECT_FALSE(fs::exists(path("out/evidence")));

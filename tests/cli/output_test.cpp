@@ -38,22 +38,17 @@ TEST_F(OutputTest, NothingIsWrittenIntoAnExperimentWhateverItsPath) {
     fs::create_directory_symlink("lab", path("link"));
     fs::create_directory(path("begun/sub"));
     const auto before = all("lab");
+    std::vector<std::string> commands{"export begun --vtk", "figures begun", "compare begun --against lab"};
+    if (MCDEM_TEST_PYTHON)
+        commands.insert(commands.end(), {"diagnose small.toml --experiment lab", "converge small.toml",
+                                         "calibrate small.toml --experiment begun --setting elastic_sphere"});
     for (const std::string out : {"lab", "./begun/../lab", "link", "lab/"}) {
-        for (const std::vector<std::string>& how : {std::vector<std::string>{}, {"--part=1/2"}, {"--merge"}})
-            expect_bad_input(mcdem(run_words(out, how)), "is the folder of an experiment");
-        if (MCDEM_TEST_PYTHON) {
-            expect_bad_input(mcdem({"diagnose", "small.toml", "--experiment", "lab", "--out", out}),
-                             "of an experiment");
-            expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "begun", "--setting",
-                                    "elastic_sphere", "--out", out}),
-                             "of an experiment");
-            expect_bad_input(mcdem({"converge", "small.toml", "--out", out}), "of an experiment");
-        }
-        expect_bad_input(mcdem({"export", "begun", "--vtk", "--out", out}), "of an experiment");
-        expect_bad_input(mcdem({"figures", "begun", "--out", out}), "of an experiment");
-        expect_bad_input(mcdem({"compare", "begun", "--against", "lab", "--out", out}), "of an experiment");
-        expect_bad_input(mcdem({"experiment", "from-run", "begun", "--replica", "0", "--out", out}),
-                         "holds another");
+        for (const std::string how : {"", " --part=1/2", " --merge"})
+            expect_refused("run small.toml --no-figures --out " + out + how,
+                           "is the folder of an experiment");
+        for (const std::string& command : commands)
+            expect_refused(command + " --out " + out, "of an experiment");
+        expect_refused("experiment from-run begun --replica 0 --out " + out, "holds another");
     }
     EXPECT_TRUE(all("lab") == before);
 }
@@ -78,66 +73,46 @@ TEST_F(OutputTest, AReportReplacesOnlyPages) {
     write("own.html", "<!doctype html>\n<html><head><title>mine</title></head></html>\n");
     fs::create_symlink("own.html", path("link.html"));
     fs::create_hard_link(path("a/run.h5"), path("hard.html"));
-    for (const std::string out :
-         {"a/run.h5", "./a/../a/run.h5", "hard.html", "small.toml", "own.html", "link.html", "a"})
-        expect_bad_input(mcdem({"report", "a", "--out", out}),
-                         "it is not replaced: give another path (--out)");
+    for (const std::string out : {"./a/../a/run.h5", "hard.html", "small.toml", "link.html", "a"})
+        expect_refused("report a --out " + out, "it is not replaced: give another path (--out)");
     EXPECT_TRUE(text("a/run.h5") == run);
     EXPECT_EQ(text("small.toml"), small_scene_text);
     EXPECT_THAT(text("own.html"), HasSubstr("mine"));
     ASSERT_EQ(::mkfifo(path("fifo").c_str(), 0600), 0);
-    expect_bad_input(mcdem({"report", "a", "--out", "fifo"}), "fifo: exists and is not a regular file");
+    expect_refused("report a --out fifo", "fifo: exists and is not a regular file");
     write("empty.html", "");
-    for (const char* out : {"empty.html", "empty.html", "new/page.html", "new/page.html"})
-        expect_done(mcdem({"report", "a", "--out", out}));
+    for (const std::string out : {"empty.html", "new/page.html", "new/page.html"})
+        expect_done("report a --out " + out);
 }
 
-TEST_F(OutputTest, OwnFilesAreReplaced) {
-    expect_done(mcdem(run_words("a")));
-    expect_bad_input(mcdem({"export", "a", "--xyz", "--scan", "100", "--out", "none"}),
-                     "--scan: must be among the scans of a (column frame of plate.csv), got 100");
-    for (int k = 0; k < 2; ++k) {
-        expect_done(mcdem({"export", "a", "--vtk", "--xyz", "--out", "view"}));
-        expect_done(mcdem({"figures", "a", "--out", "view"}));
-        expect_done(
-            mcdem({"compare", "a", "--against", "a", "--setting", "elastic_sphere", "--out", "view"}));
+TEST_F(OutputTest, OwnFilesAreReplacedAndThoseOfOthersKept) {
+    make_experiment();
+    for (int k = 0; k < 2; ++k)
+        for (const char* words : {"export begun --vtk --xyz", "figures begun",
+                                  "compare begun --against begun --setting elastic_sphere"})
+            expect_done(std::string(words) + " --out view");
+    std::vector<std::pair<std::string, std::string>> cases{{"README.txt", "export begun --vtk"},
+                                                           {"top_force.pdf", "figures begun"},
+                                                           {"scaling.svg", "figures begun"}};
+    if (MCDEM_TEST_PYTHON) {
+        for (const char* file : {"convergence.json", "convergence.png"})
+            cases.emplace_back(file, "converge small.toml");
+        for (const char* file :
+             {"diagnosis.json", "diagnosis.html", "figures.json", "which.png", "how_far.pdf"})
+            cases.emplace_back(file, "diagnose small.toml --experiment lab");
+    }
+    for (const auto& [file, words] : cases) {
+        write("of_others_" + file + "/" + file, "of mine\n");
+        expect_refused(words + " --out of_others_" + file, "it is not replaced");
+        EXPECT_EQ(text("of_others_" + file + "/" + file), "of mine\n");
     }
 }
 
-TEST_F(OutputTest, FilesOfOthersAreKept) {
-    expect_done(mcdem(run_words("a")));
-    const auto expect_kept = [&](const std::string& file, const std::vector<std::string>& words) {
-        write(file, "of mine\n");
-        expect_bad_input(mcdem(words), "it is not replaced");
-        EXPECT_EQ(text(file), "of mine\n");
-    };
-    expect_kept("1/README.txt", {"export", "a", "--vtk", "--out", "1"});
-    expect_kept("2/replica_00001_elastic_sphere/grains_000003.hdf", {"export", "a", "--vtk", "--out", "2"});
-    expect_kept("3/OVITO.txt", {"export", "a", "--xyz", "--out", "3"});
-    expect_kept("4/replica_00000_independent.xyz", {"export", "a", "--xyz", "--out", "4"});
-    expect_kept("5/replica_00000_independent.contacts.dump", {"export", "a", "--xyz", "--out", "5"});
-    expect_kept("6/top_force.pdf", {"figures", "a", "--out", "6"});
-    expect_kept("7/scaling.svg", {"figures", "a", "--out", "7"});
-    if (!MCDEM_TEST_PYTHON) return;
-    expect_kept("8/calibration.json", {"calibrate", "small.toml", "--experiment", "a", "--setting",
-                                       "elastic_sphere", "--out", "8"});
-    expect_kept("9/convergence.json", {"converge", "small.toml", "--out", "9"});
-    expect_kept("10/convergence.png", {"converge", "small.toml", "--out", "10"});
-}
-
-TEST_F(OutputTest, ADiagnosisReplacesOnlyItsOwnFiles) {
-    NEEDS_PYTHON_MODULE();
-    make_experiment();
-    const auto expect_kept = [&](const std::string& file) {
-        write(file, "of mine\n");
-        expect_bad_input(
-            mcdem({"diagnose", "small.toml", "--experiment", "lab", "--out", path(file).parent_path()}),
-            "it is not replaced");
-        EXPECT_EQ(text(file), "of mine\n");
-    };
-    for (const char* name :
-         {"1/diagnosis.json", "2/diagnosis.html", "3/figures.json", "4/which.png", "5/how_far.pdf"})
-        expect_kept(name);
+TEST_F(OutputTest, AnExportNeedsPositions) {
+    expect_done(mcdem(run_words("a", {"--set", "output.positions=false"})));
+    expect_refused("export a --vtk --out view", "a: has no positions to export: run with output.positions");
+    expect_refused("export a --xyz --scan 100 --out view",
+                   "--scan: must be among the scans of a (column frame of plate.csv), got 100");
 }
 
 TEST_F(OutputTest, ADanglingLinkIsNotAFolder) {
