@@ -83,6 +83,23 @@ TEST_F(ChallengeFolderTest, NothingIsWrittenOutsideTheFolderOrBeforeItIsComplete
     expect_refused(challenge_words(), "challenge: case_0001 is not made yet");
 }
 
+/// Two diagnoses at once: both give a verdict, and the library that is written first is kept.
+TEST_F(ChallengeFolderTest, ALibraryIsWrittenOnce) {
+    const std::string words =
+        "diagnose tiny.toml --experiment challenge/case_0001 --library l --replicates 8 --pairs 2"
+        " --confirmations 0 --candidates friction --out ";
+    Child first(folder_.path, split(words + "first"), held_after(100));
+    wait_until_held(first);
+    expect_done(words + "second");
+    const std::string written = bytes_of_file(path("l"));
+    let_go_on(first);
+    const Finished finished = first.wait();
+    expect_done(finished);
+    EXPECT_THAT(finished.err, HasSubstr("l: another process wrote this library first; it is kept"));
+    EXPECT_TRUE(fs::exists(path("first/diagnosis.json")));
+    EXPECT_EQ(bytes_of_file(path("l")), written);
+}
+
 TEST_F(ChallengeFolderTest, ASingleProcessIsRefusedWhileOthersShareTheChallenge) {
     const auto one = held_challenge("--part=1/1");
     expect_refused(challenge_words(), shared);

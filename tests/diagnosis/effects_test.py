@@ -50,7 +50,7 @@ def with_keys(**keys):
 
 class Effects(unittest.TestCase):
     def test_are_those_of_the_documentation(self):
-        readme = (pathlib.Path(__file__).parents[2] / "host/diagnose/README.md").read_text().partition("\n## The effects\n")[2]
+        readme = (pathlib.Path(__file__).parents[2] / "host/python/mcdem/diagnosis/README.md").read_text().partition("\n## The effects\n")[2]
         rows = [re.findall("`(.*?)`", row.split("|")[1]) for row in re.findall(r"^\| `.*$", readme, re.M)]
         self.assertEqual([effect.name for effect in EFFECTS], [name for row in rows for name in row])
         self.assertEqual(sorted(MOVES), sorted(effect.name for effect in EFFECTS))

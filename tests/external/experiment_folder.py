@@ -1,4 +1,4 @@
-"""Writes an experiment folder (host/experiment/README.md) from a simulation by another code, with errors of
+"""Writes an experiment folder (host/python/mcdem/experiment/README.md) from a simulation by another code, with errors of
 measurement."""
 import csv
 import math

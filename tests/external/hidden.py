@@ -2,7 +2,7 @@
 library has, simulated by another code or applied to the measurements.
 
 An entry changes the arguments of cases.liggghts(), cases.lammps() or cases.yade(), the keys of the experiment
-(realities.DEFAULTS), or the measured scans. Amplitudes are defined as in host/diagnose/effects.cpp.
+(realities.DEFAULTS), or the measured scans. Amplitudes are defined as in host/python/mcdem/diagnosis/effects.py.
 """
 import dataclasses
 import math

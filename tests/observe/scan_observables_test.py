@@ -216,7 +216,7 @@ class Table(unittest.TestCase):
             self.assertTrue(math.isfinite(row[index_of(name)]), name)
 
     def test_all_are_in_the_documentation(self):
-        readme = (pathlib.Path(__file__).parents[2] / "host/diagnose/README.md").read_text()
+        readme = (pathlib.Path(__file__).parents[2] / "host/python/mcdem/diagnosis/README.md").read_text()
         self.assertIn("".join(f"| `{one.name}` | {one.needs} | {one.meaning} |\n" for one in observables()), readme)
 
 

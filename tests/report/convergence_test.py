@@ -3,9 +3,11 @@ import dataclasses
 import unittest
 
 from mcdem.convergence.convergence_types import CauseErrors, CellError, Convergence, Limits
+from mcdem.observe.observables import observables
 from mcdem.report.convergence import convergence_figure_values, table_of_convergence
-from mcdem.report.effect_names import OBSERVABLES
 from mcdem.report.text_table import to_text
+
+OBSERVABLES = [one.name for one in observables()]
 
 
 def example():

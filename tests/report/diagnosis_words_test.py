@@ -1,14 +1,10 @@
 """Words of diagnoses, and the tables that they come from."""
 import math
-import pathlib
-import re
 import unittest
 
 from mcdem.diagnosis.diagnosis_types import Cause, MissingBins, NextStep, NuisanceFit, Refinement, WhereEntry
 from mcdem.report import diagnosis_words as words
-from mcdem.report.effect_names import EFFECTS, OBSERVABLES
 
-HOST = pathlib.Path(__file__).parents[2] / "host"
 
 # Function, arguments, result.
 CASES = [
@@ -85,25 +81,6 @@ class Words(unittest.TestCase):
         for at_limit, more in ((False, ""), (True, ", or more: it is at the limit of the range tried")):
             cause = Cause("friction", 0.08, "", 0.5, (), 0.01, at_limit, 0, 0, None)
             self.assertEqual(words.cause_words(cause), f"friction between grains (0.080 ± 0.010 higher than in the scene{more})")
-
-
-class Tables(unittest.TestCase):
-    """What the program tries and observes has words, in its order."""
-
-    def test_effects(self):
-        rows = [[name, effect.words, effect.amplitude, effect.source] for name, effect in EFFECTS.items()]
-        found = r'^    \{("\w+", "[^"]*"), "[^"]*"(, "(?:[^"\\]|\\.)*", "(?:[^"\\]|\\.)*"),$'
-        text = (HOST / "diagnose/effects.cpp").read_text("utf-8")
-        in_program = [[re.sub(r"\\(.)", r"\1", one) for one in re.findall(r'"((?:[^"\\]|\\.)*)"', first + rest)]
-                      for first, rest in re.findall(found, text, re.MULTILINE)]
-        self.assertEqual(rows, in_program)
-        self.assertEqual(len(rows), text.count("[](Model& m, double a)"))
-
-    def test_observables(self):
-        text = (HOST / "diagnose/observe/scan_observables.cpp").read_text("utf-8")
-        found = re.findall(r'^    \{"(\w+)", Needs::.*, "(.*)"\},$', text, re.MULTILINE)
-        self.assertEqual(list(OBSERVABLES.items()), found)
-        self.assertEqual(len(OBSERVABLES), text.count(", Needs::"))
 
 
 if __name__ == "__main__":

@@ -121,7 +121,7 @@ class PackingAgreement(TypedDict):
     differs: bool
 
 class Diagnosis(TypedDict):
-    """diagnosis.json; host/diagnose/DIAGNOSIS_OUTPUT.md explains the keys."""
+    """diagnosis.json; host/python/mcdem/diagnosis/DIAGNOSIS_OUTPUT.md explains the keys."""
 
     verdict: Literal["no_gap", "effect", "group", "unknown_effect", "not_converged", "calibration_suspect"]
     gap: Gap

@@ -23,7 +23,7 @@ def diagnose(scene: "Scene", experiment: Path | Sequence[Path], folder: Path, *,
     `experiment`: a folder, or a list of those of several packings, which are diagnosed together. `refine`: the largest factor by
     which a scene that is not converged is refined, 1: not at all. Writes diagnosis.json and, with `page`, diagnosis.html into
     `folder`, as `mcdem diagnose` does; simulations are kept there, so that the same call continues after an interruption by Ctrl-C.
-    `progress(stage, fraction)` is called repeatedly. host/diagnose/DIAGNOSIS_OUTPUT.md explains the keys. Raises ValueError,
+    `progress(stage, fraction)` is called repeatedly. host/python/mcdem/diagnosis/DIAGNOSIS_OUTPUT.md explains the keys. Raises ValueError,
     RuntimeError.
     """
     from .diagnosis.diagnose import Options

@@ -14,7 +14,7 @@ from .sources import add_figure_options, add_reference_options, add_runs_option,
 EPILOG = """\
 Rtop: top force at maximum compression over the reference's. errf: RMS error of the top force.
 errZ: RMS error of the coordination number, contacts below tau ignored. bhat: distance of the
-distributions of contact forces. An experiment folder is described in host/experiment/README.md.
+distributions of contact forces. An experiment folder is described in host/python/mcdem/experiment/README.md.
 Examples (DIR: your experiment folder):
   mcdem compare out/first --against DIR --discard 5 --out out/comparison
   mcdem compare out/small --against out/small --setting mc_dem"""

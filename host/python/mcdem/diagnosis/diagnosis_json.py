@@ -1,4 +1,4 @@
-"""Diagnoses as JSON; host/diagnose/DIAGNOSIS_OUTPUT.md describes the keys, mcdem.report.diagnosis reads them."""
+"""Diagnoses as JSON; host/python/mcdem/diagnosis/DIAGNOSIS_OUTPUT.md describes the keys, mcdem.report.diagnosis reads them."""
 from dataclasses import replace
 
 from ..checked_json import json_of

@@ -1,4 +1,4 @@
-"""Results of a diagnosis: the content of diagnosis.json and of the page. host/diagnose/DIAGNOSIS_OUTPUT.md explains the keys, which the
+"""Results of a diagnosis: the content of diagnosis.json and of the page. host/python/mcdem/diagnosis/DIAGNOSIS_OUTPUT.md explains the keys, which the
 fields are named after and in whose order they are.
 
 What files of earlier versions lack has a default value. Amplitudes are in their own `unit` (SI; empty: a pure number).

@@ -1,1 +1,1 @@
-"""Experiment folders (host/experiment/README.md): reading, checking and writing measured compressions."""
+"""Experiment folders (host/python/mcdem/experiment/README.md): reading, checking and writing measured compressions."""

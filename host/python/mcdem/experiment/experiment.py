@@ -1,4 +1,4 @@
-"""A measured compression, in the form of a simulated recording (host/experiment/README.md describes its folder)."""
+"""A measured compression, in the form of a simulated recording (host/python/mcdem/experiment/README.md describes its folder)."""
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,4 +1,4 @@
-"""A simulation as an experiment: what an instrument reads of one replica of a run (host/experiment/README.md)."""
+"""A simulation as an experiment: what an instrument reads of one replica of a run (host/python/mcdem/experiment/README.md)."""
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Reads experiment folders (host/experiment/README.md) into the form of simulations."""
+"""Reads experiment folders (host/python/mcdem/experiment/README.md) into the form of simulations."""
 import contextlib
 import math
 import os

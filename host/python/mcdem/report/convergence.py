@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..convergence.convergence_types import CellError, Convergence, unit_of
+from ..observe.observables import observables
 from .diagnosis_words import words_of
-from .effect_names import OBSERVABLES
 from .labels import style_number
 from .text_table import Column, TextTable
 
@@ -18,7 +18,7 @@ def _size(cell: CellError) -> float:
 
 def _worst(convergence: Convergence) -> Iterator[tuple[str, list[CellError | None]]]:
     """For each observable with errors, the largest over its limit from each cause."""
-    for observable in OBSERVABLES:
+    for observable in (one.name for one in observables()):
         found = [[cell for cell in cause.errors if cell.observable == observable] for cause in convergence.causes]
         worst = [max(cells, key=_size) if cells else None for cells in found]
         if any(worst):

@@ -4,11 +4,12 @@ from collections.abc import Iterable, Sequence
 from math import isfinite
 
 from ..diagnosis.diagnosis_types import Diagnosis, WhereEntry
+from ..diagnosis.effects import find_effect
+from ..observe.observables import observables
 from .diagnosis_charts import diagnosis_charts
 from .diagnosis_text import how_far_line, strongest_first, verdict_lines
 from .diagnosis_words import (amount, amount_with_error, displacement_words, listed, listed_names, missing_name, next_words, p_number,
                               p_words, percent, phase_words, words_of)
-from .effect_names import EFFECTS, OBSERVABLES
 from .labels import NO_NUMBER, number
 from .page import Page
 from .text_table import TextTable, table_of
@@ -177,14 +178,14 @@ def _missing_bins(diagnosis: Diagnosis) -> TextTable:
 def _effects(diagnosis: Diagnosis) -> TextTable:
     """Meanings of the candidates' amplitudes."""
     return table_of(["<effect", "<amplitude", "<source"],
-                  ([words_of(cause.effect), EFFECTS[cause.effect].amplitude, EFFECTS[cause.effect].source] for cause in diagnosis.ranking
-                   if cause.effect in EFFECTS))
+                  ([words_of(cause.effect), effect.formula, effect.source] for cause in diagnosis.ranking
+                   if (effect := find_effect(cause.effect))))
 
 
 def _observables(diagnosis: Diagnosis) -> TextTable:
     """Meanings of the rows of the figure."""
     shown = {cell.observable for cell in diagnosis.cells}
-    return table_of(["<observable", "<what it is"], ([words_of(name), meaning] for name, meaning in OBSERVABLES.items() if name in shown))
+    return table_of(["<observable", "<what it is"], ([words_of(one.name), one.meaning] for one in observables() if one.name in shown))
 
 
 def _provenance(diagnosis: Diagnosis) -> TextTable:

@@ -3,7 +3,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 
 from ..diagnosis.diagnosis_types import Cause, MissingBins, NextStep, NuisanceFit, Pair, Refinement, WhereEntry
-from .effect_names import EFFECTS
+from ..diagnosis.effects import find_effect
 from .labels import NO_NUMBER, number, one_line
 
 # Names that are not of effects.
@@ -30,8 +30,8 @@ def words_of(name: str) -> str:
     """Readable name of an effect, nuisance or observable; unknown names with blanks instead of underscores."""
     if name in SPECIAL_WORDS:
         return SPECIAL_WORDS[name]
-    if name in EFFECTS and EFFECTS[name].words:
-        return EFFECTS[name].words
+    if (effect := find_effect(name)) and effect.words:
+        return effect.words
     return one_line(name).replace("_", " ")
 
 
