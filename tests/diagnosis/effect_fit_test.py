@@ -47,6 +47,12 @@ class Fits(Setting):
         self.signature = replace(self.signature, curvature=self.world.pattern(0.4), reach=1.5)
         for amplitude in (-1.2, 0.4, 1.5, 3.7):  # the last one is beyond the reach
             self.assertAlmostEqual(self.fit(self.signature.at(amplitude), -2, 4).amplitude, amplitude, delta=1e-4)
+        # With noise, the best of many amplitudes within the reach and beyond it.
+        tried = np.linspace(-2, 4, 6001)
+        for amplitude in (-1.2, 0.4, 3.0):
+            gap = self.signature.at(amplitude) + self.world.noise(2)
+            best = tried[(self.space.whiten(gap - self.signature.at(tried)) ** 2).sum(axis=1).argmin()]
+            self.assertAlmostEqual(self.fit(gap, -2, 4).amplitude, best, delta=1e-3)
         # The error follows from the slope of the signature at the amplitude, not from its linear part.
         fit = self.fit(self.signature.at(0.4), -2, 4)
         self.assertAlmostEqual(fit.error, 1 / np.linalg.norm(self.space.whiten(self.signature.slope(fit.amplitude))), 9)

@@ -29,36 +29,20 @@ class Misfit:
     low: Floats  # (lanes, n) ends of the range of plausible amplitudes
     high: Floats
 
-    def at(self, amplitudes: Floats) -> Floats:
-        """(lanes,)"""
-        factors = self._factors(amplitudes)
-        value: Floats = self.square + (factors * (_times(self.terms, factors) - 2 * self.gap_terms)).sum(axis=1)
-        return value
-
-    def best(self) -> Floats:
-        """(lanes, n) the best amplitudes in their ranges, optimised in turn; 0 if they gain nothing."""
-        amplitudes = np.zeros_like(self.reach)
-        lanes, count = np.arange(len(amplitudes)), amplitudes.shape[1]
-        moving = self
+    def best(self) -> tuple[Floats, Floats]:
+        """The best amplitudes in their ranges (lanes, n), optimised in turn, 0 where they gain nothing; and their misfit (lanes,)."""
+        amplitudes, values = np.zeros_like(self.reach), self.square.copy()
+        lanes, moving, count = np.arange(len(amplitudes)), self, amplitudes.shape[1]
         for _ in range(MAX_ROUNDS if count > 1 else 1):
             now = amplitudes[lanes]
             for k in range(count):
-                now[:, k] = moving._along(k, now).best()
+                now[:, k], values[lanes] = moving._along(k, now).best()
             moved = (np.abs(now - amplitudes[lanes]) > UNMOVED * (moving.high - moving.low)).any(axis=1)
             amplitudes[lanes] = now
-            lanes, moving = lanes[moved], moving._some(moved)
-            if not len(lanes):
+            if count == 1 or not moved.any():
                 break
-        return amplitudes
-
-    def information(self, amplitudes: Floats) -> Floats:
-        """(lanes, n, n) Fisher information of the amplitudes: products of the whitened slopes of their signatures."""
-        bend = 2 * np.clip(amplitudes, -self.reach, self.reach)
-        slopes = np.zeros((*bend.shape, self.terms.shape[1]))
-        for k in range(bend.shape[1]):
-            slopes[:, k, 2 * k], slopes[:, k, 2 * k + 1] = 1, bend[:, k]
-        information: Floats = slopes @ self.terms @ slopes.swapaxes(1, 2)
-        return information
+            lanes, moving = lanes[moved], moving._some(moved)
+        return amplitudes, values
 
     def _factors(self, amplitudes: Floats) -> Floats:
         """(lanes, 2n) of the terms in the sum of the signatures (Signature.at)."""
@@ -68,22 +52,20 @@ class Misfit:
 
     def _along(self, k: int, amplitudes: Floats) -> "_Line":
         """As a function of amplitude `k` alone."""
-        place, factors = 2 * k, self._factors(amplitudes)
-        factors[:, place:place + 2] = 0
-        of_others = _times(self.terms, factors)
-        square = self.square + (factors * (of_others - 2 * self.gap_terms)).sum(axis=1)
-        left = self.gap_terms - of_others
+        place, square, left = 2 * k, self.square, self.gap_terms
+        if amplitudes.shape[1] > 1:
+            factors = self._factors(amplitudes)
+            factors[:, place:place + 2] = 0
+            of_others = (self.terms @ factors[:, :, None])[:, :, 0]
+            square = square + (factors * (of_others - 2 * left)).sum(axis=1)
+            left = left - of_others
         own = self.terms[:, place:place + 2, place:place + 2]
-        return _Line(square, left[:, place], left[:, place + 1], own[:, 0, 0], own[:, 0, 1], own[:, 1, 1], self.reach[:, k],
-                     self.low[:, k], self.high[:, k])
+        columns = (square, left[:, place], left[:, place + 1], own[:, 0, 0], own[:, 0, 1], own[:, 1, 1], self.reach[:, k], self.low[:, k],
+                   self.high[:, k])
+        return _Line(*(np.ascontiguousarray(column, float) for column in columns))
 
     def _some(self, lanes: Bools) -> "Misfit":
         return Misfit(**{name: values[lanes] for name, values in vars(self).items()})
-
-
-def _times(matrices: Floats, vectors: Floats) -> Floats:
-    product: Floats = (matrices @ vectors[:, :, None])[:, :, 0]
-    return product
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +93,8 @@ class _Line:
     def some(self, lanes: Bools) -> "_Line":
         return _Line(**{name: values[lanes] for name, values in vars(self).items()})
 
-    def best(self) -> Floats:
-        """The best amplitude in the range, 0 if it gains nothing: the best of a few, refined between its neighbours. (lanes,)"""
+    def best(self) -> tuple[Floats, Floats]:
+        """The best amplitude in the range and its misfit, 0 if it gains nothing: the best of a few, refined between its neighbours."""
         step = (self.high - self.low) / COARSE_STEPS
         tried = self.low + np.arange(COARSE_STEPS + 1)[:, None] * step
         values = self.at(tried)
@@ -120,7 +102,7 @@ class _Line:
         lanes, nothing = np.arange(len(first)), self.at(np.zeros_like(self.gg))
         best = np.where(values[first, lanes] < nothing, tried[first, lanes], 0)
         amplitude, value = self._refined(np.maximum(self.low, best - step), np.minimum(self.high, best + step))
-        return np.where(value < nothing, amplitude, 0)
+        return np.where(value < nothing, amplitude, 0), np.minimum(value, nothing)
 
     def _refined(self, low: Floats, high: Floats) -> tuple[Floats, Floats]:
         """The minimum between `low` and `high`, and its value (Brent 1973, chapter 5)."""

@@ -77,28 +77,33 @@ class Fits:
 
     amplitudes: Floats  # (combinations, gaps, n)
     scores: Floats  # (combinations, gaps)
-    information: Floats  # (combinations, gaps, n, n) Fisher information of the amplitudes
+    reach: Floats  # (combinations, n)
+    terms: Floats  # (combinations, 2n, 2n) products of the whitened terms of the signatures
 
     def of(self, combination: int) -> EffectFit:
         """Of the first gap."""
-        errors = _errors(self.information[combination, 0])
-        return EffectFit(self.amplitudes[combination, 0].tolist(), errors, float(self.scores[combination, 0]))
+        amplitudes, reach = self.amplitudes[combination, 0], self.reach[combination]
+        slopes = np.zeros((len(reach), 2 * len(reach)))
+        for k, bend in enumerate(2 * np.clip(amplitudes, -reach, reach)):
+            slopes[k, 2 * k:2 * k + 2] = 1, bend
+        errors = _errors(slopes @ self.terms[combination] @ slopes.T)
+        return EffectFit(amplitudes.tolist(), errors, float(self.scores[combination, 0]))
 
 
 def fits_of_many(space: GapSpace, combinations: Sequence[Candidates], gaps: Floats) -> Fits:
     """`combinations`: each of the same number n of candidates. `gaps`: (gaps, all cells) observed minus model."""
     count, n = len(combinations), len(combinations[0]) if combinations else 0
-    fits = Fits(np.zeros((count, len(gaps), n)), np.zeros((count, len(gaps))), np.zeros((count, len(gaps), n, n)))
+    fits = Fits(np.zeros((count, len(gaps), n)), np.zeros((count, len(gaps))), np.zeros((count, n)), np.zeros((count, 2 * n, 2 * n)))
     by_lacking: dict[bytes, list[int]] = {}
     lacking = [lacking_cells(candidates) for candidates in combinations]
     for k, cells in enumerate(lacking):
         by_lacking.setdefault(cells.tobytes(), []).append(k)
     for chosen in by_lacking.values():
         misfit = _misfit(space.lacking(lacking[chosen[0]]), [combinations[k] for k in chosen], gaps)
-        best = misfit.best()
+        best, value = misfit.best()
         fits.amplitudes[chosen] = best.reshape(len(chosen), len(gaps), n)
-        fits.scores[chosen] = 0.5 * (misfit.square - misfit.at(best)).reshape(len(chosen), len(gaps))
-        fits.information[chosen] = misfit.information(best).reshape(len(chosen), len(gaps), n, n)
+        fits.scores[chosen] = 0.5 * (misfit.square - value).reshape(len(chosen), len(gaps))
+        fits.reach[chosen], fits.terms[chosen] = misfit.reach[::len(gaps)], misfit.terms[::len(gaps)]
     return fits
 
 
@@ -106,7 +111,7 @@ def _misfit(space: GapSpace, combinations: Sequence[Candidates], gaps: Floats) -
     """Lanes: combinations, then gaps."""
     count, n = len(combinations), len(combinations[0])
     of_all = [term for candidates in combinations for one in candidates for term in (one.signature.linear, one.signature.curvature)]
-    terms = space.whiten(np.reshape(of_all, (count, 2 * n, gaps.shape[1])))
+    terms = space.whiten(np.reshape(of_all, (count * 2 * n, gaps.shape[1]))).reshape(count, 2 * n, len(space.cells))
     gap = space.whiten(gaps)
     limits = np.array([[(one.signature.reach, one.low, one.high) for one in candidates] for candidates in combinations], float)
     reach, low, high = np.repeat(limits.reshape(count, n, 3), len(gaps), axis=0).transpose(2, 0, 1)
@@ -115,6 +120,7 @@ def _misfit(space: GapSpace, combinations: Sequence[Candidates], gaps: Floats) -
 
 
 def _errors(information: Floats) -> list[float]:
+    """One sigma of each amplitude, from their Fisher information (n, n)."""
     n = len(information)
     if not (information.diagonal() > SHOWN).all() or n > 1 and np.linalg.matrix_rank(information, hermitian=True) < n:
         return [math.inf] * n
