@@ -3,6 +3,7 @@
 
 #include "scene/programme/legs.h"
 #include "scene/programme/programme_text.h"
+#include "scene/read/keys.h"
 #include "scene/read/read_scene.h"
 #include "scene_test_tools.h"
 
