@@ -14,7 +14,7 @@ from mcdem.challenge.make import Options, make_challenge
 from mcdem.challenge.case_simulator import CaseSimulator
 from mcdem.challenge.plan import ChallengeSize, draw_challenge, model_of
 from mcdem.challenge.truth import open_truth, seal_of
-from mcdem.errors import InputError, RunError
+from mcdem.errors import InputError
 
 sys.path.append(str(pathlib.Path(__file__).parents[1]))
 from small_scene import scene_text  # noqa: E402

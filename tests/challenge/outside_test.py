@@ -7,11 +7,13 @@ import tempfile
 import unittest
 
 import numpy as np
-from mcdem._engine import CaseSimulator, outside_effects, scene_of_options
+from mcdem._engine import scene_of_options
+from mcdem.challenge.case import ChallengeCase, Hidden
+from mcdem.challenge.case_simulator import CaseSimulator
+from mcdem.challenge.outside_effects import OUTSIDE_EFFECTS
 from mcdem.experiment.experiment import Measurement
 from mcdem.experiment.from_run import experiment_from
 from mcdem.experiment.write import write_experiment
-from mcdem.results.engine_run import run_of
 
 sys.path.append(str(pathlib.Path(__file__).parents[1]))
 from small_scene import scene_text  # noqa: E402
@@ -39,21 +41,21 @@ class OutsideEffects(unittest.TestCase):
         cls.folder = pathlib.Path(folder.name)
         (cls.folder / "small.toml").write_text(SCENE)
         scene, _ = scene_of_options(str(cls.folder / "small.toml"), [])
-        simulator = CaseSimulator(scene, (0, 0, 0, 0), "")  # measured without errors
+        simulator = CaseSimulator(scene, Measurement(), "")  # measured without errors
         simulator.make_packings([1])
-        effects = {"nothing": [], **{name: [(name, amplitude)] for name, amplitude in AMPLITUDES.items()}}
-        failures = simulator.simulate([(name, hidden, [], 0, 5) for name, hidden in effects.items()], False)
+        effects = {"nothing": (), **{name: (Hidden(name, amplitude),) for name, amplitude in AMPLITUDES.items()}}
+        cases = [ChallengeCase(name, "", hidden, (), (), 0, 5) for name, hidden in effects.items()]
+        failures = simulator.simulate(cases, False, lambda fraction: None)
         assert not any(failures), failures
         for k, name in enumerate(effects):
-            seen = run_of(simulator.measured(k)).recordings[0]
-            write_experiment(cls.folder / name, experiment_from(seen, Measurement()), gzip=True)
+            write_experiment(cls.folder / name, experiment_from(simulator.measured(k), Measurement()), gzip=True)
 
     def values(self, effect, name, column):
         """Those of the experiment without an effect, and of the one with it."""
         return (numbers(self.folder / case, name, column) for case in ("nothing", effect))
 
     def test_are_all_tried_here(self):
-        self.assertEqual(set(AMPLITUDES), {name for name, *_ in outside_effects()})
+        self.assertEqual(set(AMPLITUDES), {effect.name for effect in OUTSIDE_EFFECTS})
 
     def test_vertical_stretch_moves_grains_and_contacts_but_not_the_plate(self):
         for name in ("grains", "contacts"):

@@ -6,7 +6,7 @@ import math
 import pathlib
 import unittest
 
-from mcdem._engine import Random, outside_effects
+from mcdem.challenge.outside_effects import OUTSIDE_EFFECTS
 from mcdem.challenge.case import CaseKind, in_first_half
 from mcdem.challenge.plan import CHALLENGED_EFFECTS, ChallengeSize, Model, draw_challenge
 from mcdem.challenge.truth import parse_truth, seal_of, truth_text
@@ -86,7 +86,7 @@ class Plan(unittest.TestCase):
                 self.assertGreaterEqual(abs(hidden.amplitude) / MODEL.scales[hidden.name], least * (1 - 1e-9))
 
     def test_unknown_effects_are_not_in_the_library_of_their_diagnosis(self):
-        others = {name: (low, high, both_signs) for name, low, high, both_signs in outside_effects()}
+        others = {one.name: (one.low, one.high, one.both_signs) for one in OUTSIDE_EFFECTS}
         outside, struck = collections.Counter(), 0
         for case in of_kind(drawn(5), CaseKind.unknown):
             hidden, = case.effects

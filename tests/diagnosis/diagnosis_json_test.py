@@ -107,7 +107,7 @@ class DiagnosisJson(unittest.TestCase):
         self.assertEqual([millimetres(x) for x in (0.018 + 0.003, 0.024 - 0.003, 1e-10, 0.0126)], [21.0, 21.0, 0.0, 12.6])
 
     def test_every_key_is_documented(self):
-        known = (pathlib.Path(__file__).parents[2] / "host" / "diagnose" / "DIAGNOSIS_OUTPUT.md").read_text()
+        known = (pathlib.Path(__file__).parents[2] / "host/python/mcdem/diagnosis/DIAGNOSIS_OUTPUT.md").read_text()
         for place, keys in KEYS.items():
             for key in keys.split():
                 self.assertRegex(known, rf"\b{re.escape(key)}\b", place)

@@ -3,20 +3,19 @@ import os
 import pathlib
 import tempfile
 import unittest
+from dataclasses import replace
 
 import numpy as np
 from synthetic_evidence import GRID
 
 from mcdem.diagnosis.library import write_library
 from mcdem.diagnosis.library_simulations import build_library, fitting_library
-from mcdem.observe.grid import Grid, HoldScans, cells_of
+from mcdem.observe.grid import cells_of
 from mcdem.errors import InputError
-from mcdem.results.names import Phase
 
 CELLS = len(cells_of(GRID))
 # The last ones are parameters, of which one has the name of an effect.
 PROBES = ("force_bias", -0.1, 0.2), ("plate_tilt", -0.015, 0.015), ("modulus", -500, 500), ("friction", -0.01, 0.01)
-HOLDS = [HoldScans(3, 4, 5, "force", Phase.unload, 0.01)]
 
 
 class KnownSimulations:
@@ -85,7 +84,7 @@ class Fitting(unittest.TestCase):
         self.write()
         changes = (({"origin": {"grains.friction": "0.9"}}, "was made with grains.friction = 0.03, needed is 0.9"),
                    ({"candidates": ["adhesion"]}, "has no signature of adhesion"),
-                   ({"grid": self.simulations.grid | {"stroke": 0.04}}, "was made for a stroke of 30 mm, the experiment has 40 mm"))
+                   ({"grid": replace(self.simulations.grid, stroke=0.04)}, "was made for a stroke of 30 mm, the experiment has 40 mm"))
         for change, problem in changes:
             simulations = KnownSimulations()
             vars(simulations).update(change)

@@ -4,7 +4,6 @@ import os
 import shutil
 import subprocess
 import unittest
-from dataclasses import asdict
 
 import numpy as np
 from forgeries import FORGERIES, forge, without_grains

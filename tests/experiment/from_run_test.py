@@ -2,7 +2,7 @@
 import contextlib
 import io
 import unittest
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 from recordings import recording_of
@@ -11,6 +11,7 @@ from mcdem.commands.command_line import module_of, parser_of
 from mcdem.diagnosis.effects import find_effect
 from mcdem.errors import InputError
 from mcdem.experiment.experiment import Measurement
+from mcdem.experiment.instrument import Instrument
 from mcdem.experiment.from_run import Options, chosen_replica, experiment_from, expect_measurable, read_uncertainty
 from mcdem.results.names import ContainerShape, Wall
 from mcdem.results.recording import Box, Contacts
@@ -26,7 +27,7 @@ def seen_by_an_instrument(first=(), shape=ContainerShape.box, **more):
 
 def options(**changes):
     none = {"run": "a", "out": "e", "replica": "", "name": "", "uncertainty": (), "seed": 1, "gzip": False}
-    return Options(**none | {"instrument": {field.name: 0.0 for field in fields(Measurement)}} | changes)
+    return Options(**none | {"instrument": Instrument()} | changes)
 
 
 class FromRun(unittest.TestCase):
@@ -79,7 +80,7 @@ class FromRun(unittest.TestCase):
             self.assertEqual(messages.getvalue(), said)
 
     def test_large_errors_and_species_are_refused(self):
-        instrument = {"position_error": 0.003, "diameter_error": 0.01, "force_error": 0.0, "force_threshold": 0.0}
+        instrument = Instrument(Measurement(0.003, 0.01))
         self.assertEqual(self.problems_of(expect_measurable, seen_by_an_instrument(), options(instrument=instrument)),
                          [f"--{option}-error: must be at most an eighth of the smallest diameter, 0.0025 m, got {got}"
                           for option, got in (("position", "0.003"), ("diameter", "0.01"))])

@@ -13,7 +13,7 @@ from mcdem.observe.force_observables import force_distribution, wall_loads
 from mcdem.observe.observables import MIN_CONTACTS, index_of, observables
 from mcdem.observe.observation import scan_observables
 from mcdem.observe.position_observables import attraction, fabric, friction, non_affine, section_load, torque_imbalance, wall_friction
-from mcdem.results import NO_CONTACTS, Box, Wall
+from mcdem.results import NO_CONTACTS, Wall
 
 HERE = (0, 0, 0)
 

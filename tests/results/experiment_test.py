@@ -11,7 +11,6 @@ import unittest
 import written
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "host/python"))
-from mcdem.commands import COMMANDS  # noqa: E402
 from mcdem.commands.command_line import module_of, parser_of, run_command  # noqa: E402
 from mcdem.commands.sources import load_runs, names_of  # noqa: E402
 from mcdem.errors import InputError  # noqa: E402
@@ -89,8 +88,7 @@ class Commands(unittest.TestCase):
     def test_usage_errors(self):
         compare, converge = ["compare", "run.h5", "--against", "x"], ["converge", "s", "--out", "o"]
         calibrate = ["calibrate", "s", "--experiment", "x"]
-        for words, message in (([], "A subcommand is required"), (["nonsense"], "there is no command nonsense"),
-                               (["--nonsense"], "there is no option --nonsense"), (["table"], "RUN is required"),
+        for words, message in ((["table"], "RUN is required"),
                                (compare[:2], "--against is required"),
                                (["table", "run.h5", "--mark"], "The following argument was not expected: --mark"),
                                ([*compare, "--touch-force", "-1"], "--touch-force: must be a number >= 0, got -1"),
@@ -106,7 +104,6 @@ class Commands(unittest.TestCase):
                                ([*calibrate, "--batch", "2"], "--batch: must be a whole number from 3 to 10000, got 2"),
                                ([*calibrate, "--low=-1"], "--low: must be a number >= 0, got -1"),
                                (["report", "x", "--out", "o", "--scans", "0"], "--scans: must be a whole number from 1 to 100000, got 0")):
-            command = f"mcdem {words[0]}" if words[:1] and words[0] in COMMANDS else "mcdem"
             with contextlib.redirect_stderr(io.StringIO()) as said:
                 try:
                     code = run_command(words)

@@ -53,7 +53,7 @@ def add(run, name, values):
 
 
 def write_replica(run, name, number):
-    add(run, f"parameters/{name}", [[b"contact.model", b'"mc_dem"'], [b"packing.seed", str(number + 1).encode()],
+    add(run, f"parameters/{name}", [[b"contact.model", b"mc_dem"], [b"packing.seed", str(number + 1).encode()],
                                     [b"grains.friction", b"0.25"], [b"contact.friction_law", b"mindlin"]])
     particles = run.create_group(f"particles/{name}")
     particles.attrs["label"] = np.bytes_(f"mc_dem #{number + 1}")

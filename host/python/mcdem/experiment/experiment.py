@@ -16,7 +16,7 @@ def other_materials(stated: Mapping[str, float], parameters: Mapping[str, Any]) 
     with these parameters does not have. With several species, which have their own, none."""
     if "species.1.name" in parameters:
         return []
-    return [f"{key} = {shortest(value)} (scene: {shortest(used)})" for key, value in stated.items()
+    return [f"{key} = {shortest(value)} (scene: {shortest(used)})" for key, value in sorted(stated.items())
             if isinstance(used := parameters.get(key), (int, float)) and abs(used - value) > 1e-6 * abs(value)]
 
 
