@@ -43,9 +43,7 @@ class Model:
 
     def with_keys(self, changes: Mapping[str, Any]) -> Model:
         """With other values of keys of the scene."""
-        model = replace(self, changes={**self.changes, **changes})
-        model.__dict__["_values"] = self._values  # of the same base
-        return model
+        return replace(self, changes={**self.changes, **changes})
 
     def read_with(self, **changes: Any) -> Model:
         """With another instrument."""
