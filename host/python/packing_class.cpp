@@ -48,7 +48,7 @@ std::string digest_of(const Packing& packing) {
 
 /// A simulation: a scene's first replica, its packing, standard deviations of the noise on coordinates and on
 /// diameters [m], and the seed of both noises and of the grains' random properties.
-using Start = std::tuple<Scene, Packing, double, double, std::uint64_t>;
+using StartTuple = std::tuple<Scene, Packing, double, double, std::uint64_t>;
 
 bool is_on_last_way_back(const Replica& replica, const Scan& scan) {
     return replica.programme.empty() && scan.phase == Phase::unload &&
@@ -57,7 +57,7 @@ bool is_on_last_way_back(const Replica& replica, const Scan& scan) {
 
 /// `end_below`: by replica, or empty: a replica ends where on its last way back the displacement of the plate
 /// is less [m].
-SharedRun simulate_starts(Device& device, const std::vector<Start>& starts, std::size_t scans,
+SharedRun simulate_starts(Device& device, const std::vector<StartTuple>& starts, std::size_t scans,
                           const std::vector<double>& end_below, const Callbacks& callbacks) {
     Scene batch = std::get<0>(starts.front());
     batch.output.positions = batch.output.contacts = true;
@@ -100,7 +100,7 @@ void bind_simulate(py::module_& module) {
         "The packing of each replica, or of the first replica with each of these seeds.");
     module.def(
         "simulate_starts",
-        [](Device& device, const std::vector<Start>& starts, std::optional<std::size_t> scans,
+        [](Device& device, const std::vector<StartTuple>& starts, std::optional<std::size_t> scans,
            const std::vector<double>& end_below, py::object progress) {
             return watched(std::move(progress), [&](const auto& callbacks) {
                 return simulate_starts(device, starts, scans.value_or(SIZE_MAX), end_below, callbacks);
