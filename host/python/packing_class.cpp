@@ -1,5 +1,5 @@
-// mcdem._engine.Device, Packing and simulate: what Python simulates for a diagnosis, a calibration, a study
-// of convergence and a challenge.
+// mcdem._engine.Device, Packing and simulate_starts: what Python simulates for a diagnosis, a calibration, a
+// study of convergence and a challenge.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -59,6 +59,8 @@ bool is_on_last_way_back(const Replica& replica, const Scan& scan) {
 /// is less [m].
 SharedRun simulate_starts(Device& device, const std::vector<StartTuple>& starts, std::size_t scans,
                           const std::vector<double>& end_below, const Callbacks& callbacks) {
+    if (starts.empty() || (!end_below.empty() && end_below.size() != starts.size()))
+        throw py::value_error("starts: must be one or more, with as many values of end_below or none");
     Scene batch = std::get<0>(starts.front());
     batch.output.positions = batch.output.contacts = true;
     batch.replicas.clear();
@@ -112,9 +114,9 @@ void bind_simulate(py::module_& module) {
     module.def(
         "write_recording",
         [](const std::filesystem::path& file, const Run& run, std::size_t number) {
-            Run one = run;
-            one.recordings.assign(1, run.recordings.at(number));
-            write_run(file, one);
+            write_run(
+                file,
+                {run.name, run.scene, run.program, run.device, run.precision, {run.recordings.at(number)}});
         },
         py::arg("file"), py::arg("run"), py::arg("number"), "Writes one recording as a run.");
     module.def(

@@ -122,9 +122,10 @@ void bind_variants(py::class_<Scene>& type) {
             },
             py::arg("parameters"), "With the programme of a recording's parameters; none: strokes.")
         .def("_with_box", [](const Scene& scene, const std::string& shape, double size_x, double size_y) {
+            const auto known = parse<ContainerShape>(shape);
+            if (!known) throw py::value_error("shape: must be that of a container, got " + shape);
             Scene changed = scene;
-            for (Replica& replica : changed.replicas)
-                replica.box = {size_x, size_y, *parse<ContainerShape>(shape)};
+            for (Replica& replica : changed.replicas) replica.box = {size_x, size_y, *known};
             return changed;
         });
 }
@@ -188,7 +189,13 @@ void bind_scene(py::module_& module) {
     module.def("expect_plate", &expect_plate, py::arg("scene"), py::arg("what"),
                "Refuses cells and species, which `what` does not support.");
     module.def(
-        "key_unit", [](const std::string& key) { return std::string(find_key(key)->unit); }, py::arg("key"));
+        "key_unit",
+        [](const std::string& name) {
+            const Key* key = find_key(name);
+            if (!key) throw py::key_error(name);
+            return std::string(key->unit);
+        },
+        py::arg("key"));
     module.def("expect_plain_strokes", &expect_plain_strokes, py::arg("scene"), py::arg("what"),
                "Refuses cells, species and programmes, which `what` does not support.");
     module.def(

@@ -1,17 +1,18 @@
 """Steps of a study whose simulations are made up: what is simulated, on which packings, and what is refused. study_test.py"""
 import types
 import unittest
+from dataclasses import replace
 
 import numpy as np
 from refinements_test import PARAMETERS
 
 from mcdem.convergence.convergence_types import Limits
 from mcdem.convergence.converge import Study, converge
-from mcdem.observe.grid import Grid, cells_of, grid_from
+from mcdem.observe.grid import Grid, cells_of
 from mcdem.observe.observables import observables
 from mcdem.errors import InputError
 
-GRID = {"displacement": [0.01, 0.02], "width": 0.002, "stroke": 0.02, "force": [], "force_width": 0.0, "holds": []}
+GRID = Grid([0.01, 0.02], 0.002, 0.02)
 CELLS = cells_of(Grid([0.01, 0.02], 0.002, 0.02))
 FIRST = [observables()[cell.observable].name for cell in CELLS].index
 REPLICAS = 8
@@ -26,7 +27,7 @@ class Simulated:
         self.packing = self._random.normal(0, scatter, (REPLICAS, len(CELLS)))
 
     def find_grid(self, progress=None):
-        return grid_from(self.grid)
+        return self.grid
 
     def observe(self, changes, progress=None):
         progress(0.5)
@@ -83,7 +84,7 @@ class Studies(unittest.TestCase):
         self.assertEqual(self.told, [("the scene as it stands", 0.5)])
 
     def test_where_forces_are_set_displacements_count(self):
-        simulated = Simulated(grid=GRID | {"force": [0.5, 1.0], "force_width": 0.1})
+        simulated = Simulated(grid=replace(GRID, force=[0.5, 1.0], force_width=0.1))
         simulated.lost = {(row, FIRST("top_force")) for row in range(8)}
         self.assertEqual(len(self.study(simulated).causes), 4)
         simulated.lost = {(row, FIRST("displacement")) for row in range(8)}

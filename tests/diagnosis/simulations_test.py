@@ -50,6 +50,11 @@ class Libraries(unittest.TestCase):
         np.testing.assert_array_equal(rows[4:6, 0], rows[[0, 2], 0])
         self.assertEqual([trial.seed for trial in simulations.plan.baseline()], [1, 2, 1001, 1002])
 
+    def test_seeds_begin_again_after_the_largest(self):
+        plan = self.small.plan(seed=2**64 - 2)
+        self.assertEqual([trial.seed for trial in plan.baseline()], [2**64 - 2, 2**64 - 1, 0])
+        self.assertEqual(plan.baseline(replicates=0), [])
+
     def test_the_finer_baseline_has_half_the_error_of_positions(self):
         plan = self.small.plan()
         for coarse, fine in zip(plan.baseline(), plan.baseline(finer=0.5), strict=True):

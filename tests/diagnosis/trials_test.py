@@ -175,6 +175,14 @@ class Names(unittest.TestCase):
         self.assertEqual(len(names), len(comparisons) + 1 + len(trials))
 
 
+    def test_of_equal_comparisons_are_equal(self):
+        """A grid that was read from a file has real numbers where whole ones were set."""
+        comparison = self.small.comparison
+        read = replace(comparison, discard=comparison.discard, grid=replace(comparison.grid, force_width=0, displacement=list(
+            np.array(comparison.grid.displacement))))
+        self.assertEqual(observation_name(self.name, read, self.trial), observation_name(self.name, comparison, self.trial))
+
+
 class Store(unittest.TestCase):
     def setUp(self):
         self.small = Small(self)

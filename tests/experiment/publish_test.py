@@ -20,6 +20,7 @@ from mcdem.errors import InputError, RunError
 from mcdem.experiment import publish as published
 from mcdem.experiment.experiment import Experiment
 from mcdem.experiment.publish import expect_free, publish, read_back, work_folder
+from mcdem.files import write_whole
 from mcdem.experiment.write import experiment_files, sums_text, write_files
 from mcdem.results.recording import Box
 
@@ -285,6 +286,22 @@ class Killed(Folders):
             self.assertIn(folder, files.unfinished)
         self.assertNotIn(folder, files.unfinished)
         self.assertFalse(folder.exists())
+
+
+class TemporaryFiles(unittest.TestCase):
+    def test_one_that_another_process_took_for_abandoned_is_made_again(self):
+        """Before it was locked."""
+        removed = []
+
+        def removes_the_first(out, how):
+            if not removed:
+                removed.append(out.name)
+                os.unlink(out.name)
+
+        with tempfile.TemporaryDirectory() as folder, mock.patch("mcdem.files.fcntl.flock", removes_the_first):
+            write_whole(os.path.join(folder, "a"), b"whole")
+            self.assertEqual((os.listdir(folder), len(removed)), (["a"], 1))
+            self.assertEqual(pathlib.Path(folder, "a").read_bytes(), b"whole")
 
 
 if __name__ == "__main__":

@@ -2,9 +2,10 @@
 import math
 import unittest
 from dataclasses import replace
+from unittest import mock
 
 import numpy as np
-from scans_by_hand import SOFT, at, seen
+from scans_by_hand import SOFT, Lattice, at, seen
 
 from mcdem.results import Box, ContainerShape, Wall
 
@@ -92,6 +93,13 @@ class CrossContact(unittest.TestCase):
         for degrees, wanted in ((60, -0.0597), (90, 0.0844), (120, 0.1723), (180, 0.2387)):
             self.assertAlmostEqual(self.displacement(degrees, 0.5), wanted, delta=5e-5)
         self.assertAlmostEqual(self.displacement(180, 0.3), 1.3 / (4 * math.pi) * (-1.4 - 0.8 + 4.6), 12)
+
+    def test_does_not_depend_on_how_many_are_computed_at_once(self):
+        """A lattice in which grains have 3 to 6 contacts."""
+        at_once = Lattice(4).seen().residuals.cross_contact
+        with mock.patch("mcdem.observe.contact_residuals.MOST_PAIRS", 40):
+            np.testing.assert_array_equal(Lattice(4).seen().residuals.cross_contact, at_once)
+        self.assertTrue((at_once > 0).any())
 
     def test_is_bounded_for_very_close_contacts(self):
         self.assertAlmostEqual(self.displacement(0.1, 0.5), self.displacement(10, 0.5), 12)

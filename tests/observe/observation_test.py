@@ -158,6 +158,8 @@ class Programmes(unittest.TestCase):
         recording = recording_of(rows, programme({"force": "3", "scans": str(len(rows) - 1)}))
         grid = grid_of(recording)
         np.testing.assert_allclose(grid.force, np.multiply(grid.displacement, 100), rtol=1e-9)
+        unseen = programme({"force": "3", "scans": "0"}, {"position": "0.13", "scans": str(len(rows) - 1)})
+        self.assertEqual(grid_of(recording_of(rows, unseen)).force, grid.force, "also if the stage with the force has no scans")
         way = values_of(recording, grid, "displacement")
         self.assertAlmostEqual(way[1], grid.displacement[1] / grid.stroke, 9)
         self.assertAlmostEqual(way[5], 1.25 * grid.displacement[1] / grid.stroke, 9)

@@ -62,6 +62,11 @@ class Grains(unittest.TestCase):
         u[1::2] = -u[::2]
         self.assertLess(abs(found(here, there, u, cross, 0.001 * np.random.default_rng(6).standard_normal(len(u)), 200)[6]), 0.002)
 
+    def test_unknown_overlaps_leave_the_regression_unknown(self):
+        here, there, u, cross = random_contacts(50, 1)
+        u[3] = math.nan
+        self.assertTrue(np.isnan(found(here, there, u, cross, 0.1 * u, 50)[:4]).all())
+
     def test_five_contacts_a_term_are_needed(self):
         random = np.random.default_rng(7)
         for count, known in ((19, False), (20, True)):

@@ -131,6 +131,21 @@ TEST(Programme, OfADamagedFileIsRefused) {
     EXPECT_THAT(problems_of([&] { programme_of(parameters); }), ElementsAre(HasSubstr("and 1000000 scans")));
 }
 
+// Files that other programs wrote or changed.
+TEST(Programme, ParametersOfOtherSpellingsAreNumbers) {
+    EXPECT_EQ(parameters_of({{"grains.friction", "+0.05"}, {"protocol.cycles", "10.0"}}),
+              (Parameters{{"grains.friction", 0.05}, {"protocol.cycles", std::int64_t{10}}}));
+    for (const char* text : {"nan", "inf", "0.1 m", "[1]"})
+        EXPECT_EQ(parameters_of({{"grains.friction", text}}).begin()->second, Parameter(text)) << text;
+    for (const char* text : {"[0.1, nan]", "[0.1, \"a\"]"})
+        EXPECT_EQ(parameters_of({{"programme.1.scan_at", text}}).begin()->second, Parameter(text)) << text;
+    // Keys of another version.
+    EXPECT_EQ(
+        parameters_of({{"seed", "3"}, {"old.switch", "true"}, {"old.size", "0.5"}, {"old.word", "a b"}}),
+        (Parameters{
+            {"seed", std::uint64_t{3}}, {"old.switch", true}, {"old.size", 0.5}, {"old.word", "a b"}}));
+}
+
 TEST(Programme, ParametersAreTheSameFromTheirTexts) {
     const Scene scene = read("[[programme]]\nposition = 0.07\nscan_at = [0.085, 0.08]\n");
     const Parameters& parameters = scene.replicas.front().parameters;
@@ -143,7 +158,7 @@ TEST(Programme, ParametersAreTheSameFromTheirTexts) {
     EXPECT_EQ(parameters_of(others), (Parameters{{"contact.model", "mc_dem"},
                                                  {"grains.friction", "1/2"},
                                                  {"packing.count", "3.5"},
-                                                 {"old", "7"}}));
+                                                 {"old", std::uint64_t{7}}}));
     std::string nested = "1\na";
     for (int depth = 0; depth < 300'000; ++depth) nested += ".a";
     EXPECT_EQ(parameters_of({{"programme.1.scan_at", nested + " = 1"}}).begin()->second,

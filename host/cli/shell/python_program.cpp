@@ -93,6 +93,7 @@ pid_t start(std::vector<std::string> words) {
     sigemptyset(&held);
     sigaddset(&held, SIGINT);
     ::pthread_sigmask(SIG_BLOCK, &held, &before);
+    std::signal(SIGCHLD, SIG_DFL);  // a caller may have ignored it, and then nobody could wait for the child
     const pid_t parent = ::getpid(), child = ::fork();
     const int error = errno;
     if (child == 0) {  // only async-signal-safe functions between fork and exec
@@ -109,7 +110,10 @@ pid_t start(std::vector<std::string> words) {
 int status_of(pid_t child) {
     const Interrupt interrupt;
     int status = 0;
-    for (bool told = false; ::waitpid(child, &status, WNOHANG) != child;) {
+    bool told = false;
+    for (pid_t ended = 0; (ended = ::waitpid(child, &status, WNOHANG)) != child;) {
+        if (ended < 0 && errno != EINTR)
+            throw RunError(std::string("the started process cannot be waited for: ") + std::strerror(errno));
         if (Interrupt::wanted() && !told) {
             ::kill(child, SIGTERM);
             told = true;

@@ -50,17 +50,16 @@ def read_whole(file: Path) -> bytes:
 def new_file(file: Path) -> Iterator[BinaryIO]:
     """A temporary file to write bytes to, which is then flushed to disk and renamed. An OSError names the file."""
     file = pathlib.Path(file)
-    temporary = file.with_name(f"{file.name}.{secrets.token_hex(8)}.tmp")
-    unfinished.add(temporary)
+    temporary, opened = file.with_name(f"{file.name}.{secrets.token_hex(8)}.tmp"), None
     try:
-        with open(temporary, "xb") as out:
-            # Others remove only unlocked files (host/core/atomic_file.cpp); some network file systems have no locks.
-            with contextlib.suppress(OSError):
-                fcntl.flock(out, fcntl.LOCK_EX)
+        while opened is None:
+            unfinished.add(temporary)
+            opened = _locked_file(temporary)
+        with opened as out:
             yield out
             out.flush()
             os.fsync(out.fileno())
-        os.replace(temporary, file)
+            os.replace(temporary, file)  # still locked: nobody takes it for abandoned
     except OSError as error:
         if error.errno is None or error.filename not in (None, str(temporary)):
             raise  # of another file
@@ -68,6 +67,22 @@ def new_file(file: Path) -> Iterator[BinaryIO]:
     finally:
         temporary.unlink(missing_ok=True)
         unfinished.discard(temporary)
+
+
+def _locked_file(temporary: pathlib.Path) -> BinaryIO | None:
+    """A new file; None if another process took it for abandoned before it was locked. Others remove only unlocked files
+    (host/core/atomic_file.cpp); some network file systems have no locks."""
+    out = open(temporary, "xb")
+    try:
+        with contextlib.suppress(OSError):
+            fcntl.flock(out, fcntl.LOCK_EX)
+        if os.fstat(out.fileno()).st_nlink:
+            return out
+    except BaseException:
+        out.close()
+        raise
+    out.close()
+    return None
 
 
 def write_whole(file: Path, content: bytes) -> None:

@@ -72,8 +72,11 @@ Scene variant_of(const Scene& scene, const std::map<std::string, std::string>& v
         const Key* known = find_key(name);
         const auto value = parse_value(text);
         if (!known || !value) throw InputError(name + ": is no key, or has no value of TOML: " + text);
+        if (known->scope != Scope::replica)
+            throw InputError(name + ": is a key of the run, not of a replica");
         Key key = *known;
-        key.range = {-HUGE_VAL, HUGE_VAL};
+        if (std::holds_alternative<MemberOf<double>>(key.member)) key.range = {-HUGE_VAL, HUGE_VAL};
+        if (std::holds_alternative<MemberOf<int>>(key.member)) key.range = {0, 1e9};
         if (const auto problem = assign(key, *value->get("value"), settings))
             throw InputError(fmt::format("{} {}", name, *problem));
     }

@@ -20,10 +20,9 @@ Scene with_changes(const Scene& scene, const std::map<std::string, std::string>&
 /// its programme.
 std::vector<std::pair<std::string, Parameter>> values_of_keys(const Scene& scene);
 
-/// The first replica with these values, as TOML text, of any keys but those of packing and batch, which have
-/// no effect. Nothing is checked but that keys exist and values have their type: a simulation may leave the
-/// range of what a user may ask for. Sizes of a cylinder and of a cell do not change, nor do the parameters
-/// that recordings of the replica will have. Throws InputError.
+/// The first replica with these values, as TOML text, of any of its keys; those of the packing have no
+/// effect. Numbers may leave the range of what a user may ask for. Sizes of a cylinder and of a cell do not
+/// change, nor do the parameters that recordings of the replica will have. Throws InputError.
 Scene variant_of(const Scene& scene, const std::map<std::string, std::string>& values);
 
 /// The scene with the programme in a recording's parameters; none: strokes.

@@ -78,8 +78,11 @@ struct FromText {
         const toml::array* list = table ? table->get("value")->as_array() : nullptr;
         if (!list) return text;
         std::vector<double> numbers;
-        for (const toml::node& element : *list)
-            numbers.push_back(element.value<double>().value_or(not_given));
+        for (const toml::node& element : *list) {
+            const auto number = element.value<double>();
+            if (!number || !std::isfinite(*number)) return text;
+            numbers.push_back(*number);
+        }
         return numbers;
     }
     template <class Word>
@@ -93,9 +96,34 @@ private:
         Number value{};
         const char* const last = text.data() + text.size();
         const auto [end, error] = std::from_chars(text.data(), last, value);
-        return error == std::errc{} && end == last ? Parameter(value) : Parameter(text);
+        if (error == std::errc{} && end == last && std::isfinite(static_cast<double>(value))) return value;
+        return of_another_program<Number>();
+    }
+
+    /// Other spellings of TOML: +0.05, 10.0 of a whole number.
+    template <class Number>
+    Parameter of_another_program() const {
+        const auto table = parse_value(text);
+        const auto number = table ? table->get("value")->value<double>() : std::nullopt;
+        constexpr double most = 9e15;  // a whole number is exact
+        if (!number || !std::isfinite(*number) || std::abs(*number) > most) return text;
+        const auto value = static_cast<Number>(*number);
+        return static_cast<double>(value) == *number ? Parameter(value) : Parameter(text);
     }
 };
+
+/// The parameter that a text of an unknown key, perhaps of another version, seems to mean.
+Parameter guessed(const std::string& text) {
+    if (text == "true" || text == "false") return text == "true";
+    const auto is_all = [&](auto& number) {
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        return error == std::errc{} && end == text.data() + text.size();
+    };
+    if (std::uint64_t whole = 0; is_all(whole)) return whole;
+    if (std::int64_t whole = 0; is_all(whole)) return whole;
+    if (double number = 0; is_all(number) && std::isfinite(number)) return number;
+    return text;
+}
 
 /// Levenshtein distance: number of insertions, deletions and replacements between two words.
 std::size_t distance(std::string_view a, std::string_view b) {
@@ -135,7 +163,9 @@ Parameters parameters_of(const ParameterTexts& texts) {
     Parameters all;
     for (const auto& [name, text] : texts) {
         const Key* key = find_key(name);
-        all[name] = text.empty() ? Parameter() : key ? std::visit(FromText{text}, key->member) : text;
+        all[name] = text.empty() ? Parameter()
+                    : key        ? std::visit(FromText{text}, key->member)
+                                 : guessed(text);
     }
     return all;
 }

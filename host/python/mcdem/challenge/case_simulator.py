@@ -31,7 +31,7 @@ class CaseSimulator:
         self._device = engine.Device(device)
         self._packings: list[engine.Packing] = []
         self._cases: Sequence[ChallengeCase] = ()
-        self._run: engine.Run | None = None
+        self._recordings: Sequence[Recording] = ()  # of these cases
 
     def make_packings(self, seeds: Sequence[int]) -> None:
         self._packings = engine.make_packings(self.stated.scene, seeds)
@@ -45,14 +45,12 @@ class CaseSimulator:
         self._cases, jitter = cases, START_JITTER * self.stated.mean_diameter
         starts = [(self._model_of(case).scene, self._packings[case.packing], jitter, 0.0, case.seed) for case in cases]
         scans = 1 + self.stated["protocol.scans_per_stroke"] if loading else None
-        self._run = engine.simulate_starts(self._device, starts, scans=scans, progress=progress)
-        return [one.failure.text() if one.failure else "" for one in run_of(self._run).recordings]
+        self._recordings = run_of(engine.simulate_starts(self._device, starts, scans=scans, progress=progress)).recordings
+        return [one.failure.text() if one.failure else "" for one in self._recordings]
 
     def measured(self, k: int) -> Recording:
         """The k-th case of the last call as its instrument reads it, with the box as it is stated."""
-        assert self._run is not None
-        case = self._cases[k]
-        recording = run_of(self._run).recordings[k]
+        case, recording = self._cases[k], self._recordings[k]
         for hidden in case.effects:
             outside = find_outside_effect(hidden.name)
             if outside and outside.change_reading:

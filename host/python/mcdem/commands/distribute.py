@@ -1,8 +1,10 @@
 """mcdem distribute: the parts of a command as processes of this machine, or as tasks of Dask."""
 import argparse
 import contextlib
+import subprocess
 from collections.abc import Sequence
 
+from ..command import program_path
 from ..errors import InputError
 from ..program import raise_when_interrupted
 from .command_line import Parser, whole_in
@@ -37,6 +39,8 @@ def parse(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
 
 def run(options: argparse.Namespace) -> int:
     _expect_command(options.words)
+    if {"-h", "--help"} & {*options.words}:
+        return subprocess.run([program_path(), *options.words]).returncode
     from ..distributed import client_of, compute
     with contextlib.ExitStack() as stack:
         client = stack.enter_context(client_of(options.scheduler)) if options.scheduler else None

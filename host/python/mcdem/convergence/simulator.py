@@ -8,6 +8,7 @@ from typing import Any
 
 from .. import _engine as engine
 from ..diagnosis.model import Model
+from ..diagnosis.plan import SEEDS
 from ..diagnosis.trials import Comparison, ObservationStore, Observer, Progress, Trial
 from ..errors import InputError
 from ..experiment.experiment import Measurement
@@ -68,14 +69,14 @@ class Simulator:
     def draw_packings(self) -> None:
         """From then on every copy has its own random packing."""
         seed = self._scene._values["packing.seed"]
-        self._packings = engine.make_packings(self._scene, [seed + copy for copy in range(len(self._packings))])
+        self._packings = engine.make_packings(self._scene, [(seed + copy) % SEEDS for copy in range(len(self._packings))])
 
     def _model(self, scene: engine.Scene) -> Model:
         threshold = scene._values["protocol.force_threshold"]
         return Model(scene, {}, Instrument(Measurement(force_threshold=threshold)), self._mean_diameter)
 
     def _trials(self, model: Model) -> list[Trial]:
-        return [Trial(model, packing, self._jitter, 0.0, self._seed + copy) for copy, packing in enumerate(self._packings)]
+        return [Trial(model, packing, self._jitter, 0.0, (self._seed + copy) % SEEDS) for copy, packing in enumerate(self._packings)]
 
     def _observer(self, model: Model) -> Observer:
         comparison = Comparison(self.grid, model.material(), model["protocol.discard"])

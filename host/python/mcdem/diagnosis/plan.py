@@ -21,6 +21,7 @@ ALIKE_STROKES = 0.1  # relative, of the packings of one experiment
 BEGUN = 0.02  # over the stroke: a scan before it is not one of its levels, even if the plate's zero is slightly wrong
 APART = 0x6C696272617279  # seeds of other packings are not those of any experiment, but for an improbable coincidence
 SEEDS_OF_A_PACKING = 1000  # apart from those of the next one
+SEEDS = 2**64  # seeds beyond begin again
 
 Note = Callable[[str], object]
 
@@ -76,7 +77,8 @@ class Plan:
                 stated = changed.instrument.stated
                 changed = changed.read_with(stated=replace(stated, position_error=finer * stated.position_error))
             trials += [Trial(changed, packing, finer * measurement.position_error, measurement.diameter_error,
-                             self.seed + SEEDS_OF_A_PACKING * p + r) for r in range(replicates or self.replicates)]
+                             (self.seed + SEEDS_OF_A_PACKING * p + r) % SEEDS)
+                       for r in range(self.replicates if replicates is None else replicates)]
         return trials
 
     def library(self) -> list[Trial]:
@@ -119,7 +121,7 @@ def plan_of_others(scene: engine.Scene, measured: Experiment, packings: int, can
     experiment = _compared_cycles(scene, measured)
     plate = {key: scene._values[key] for key in ("plate.start", "plate.end")}
     model = _model_of(scene, experiment).with_keys(plate)
-    seeds = [engine.derived_seed(seed + APART, p) for p in range(packings)]
+    seeds = [engine.derived_seed((seed + APART) % SEEDS, p) for p in range(packings)]
     made = [(model, packing) for packing in engine.make_packings(model.scene, seeds)]
     # The grid has the plate positions of the scene, from which the experiment's zero of strain differs.
     grid = grid_of(experiment.recording)
@@ -187,7 +189,7 @@ def _expect_alike(experiments: Sequence[Experiment], grid: Grid) -> None:
         if (other.measurement, other.uncertainty) != (first.measurement, first.uncertainty):
             problems.append(f"{other.name}: experiment.toml must state the same [measurement] and [uncertainty] as that of {first.name}, to be "
                             "diagnosed with it")
-        if _programme(other.recording) != _programme(first.recording):
+        if engine.programme_text(_programme(other.recording)) != engine.programme_text(_programme(first.recording)):
             problems.append(f"{other.name}: experiment.toml must state the same [[programme]] as that of {first.name}, to be diagnosed with it")
         if (stroke := grid_of(other.recording).stroke) > (1 + ALIKE_STROKES) * grid.stroke:
             problems.append(f"{other.name}: its stroke of {1e3 * stroke:.4g} mm must be within a tenth of the shortest, "

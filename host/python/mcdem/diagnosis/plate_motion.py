@@ -11,7 +11,7 @@ Change = tuple[str, str, float, float]  # of a key of the scene: key, unit, from
 def neglected_motion(model: Model, experiment: Experiment, max_slowdown: float) -> list[Change]:
     """The changes that give the model's plate the motion of the experiment's.
 
-    None if it already moves so or follows a programme, if the experiment does not state its speed, or if the experiment's plate is slower than
+    Nothing if it already moves so or follows a programme, if the experiment does not state its speed, or if the experiment's plate is slower than
     the scene's by more than a factor of `max_slowdown`.
     """
     speed = experiment.plate_speed or 0.0

@@ -96,14 +96,22 @@ class ObservationStore:
 
 def simulation_name(trial: Trial, device: str) -> str:
     """Digest of everything that determines the simulation of a trial."""
-    facts = (engine.__version__, device, trial.model.digest, trial.packing.digest, trial.jitter, trial.diameter_jitter, trial.seed)
+    facts = (engine.__version__, device, trial.model.digest, trial.packing.digest, float(trial.jitter), float(trial.diameter_jitter),
+             trial.seed)
     return hashlib.sha256(repr(facts).encode()).hexdigest()
 
 
 def observation_name(simulation: str, comparison: Comparison, trial: Trial) -> str:
     """.. and its observation."""
-    facts = (simulation, astuple(trial.model.instrument), astuple(comparison), [one.name for one in observables()])
+    facts = simulation, plain(astuple(trial.model.instrument)), plain(astuple(comparison)), [one.name for one in observables()]
     return hashlib.sha256(repr(facts).encode()).hexdigest()
+
+
+def plain(value: object) -> object:
+    """The same with every number as a float: equal values have equal texts."""
+    if isinstance(value, (list, tuple)):
+        return [plain(one) for one in value]
+    return float(value) if isinstance(value, (int, float, np.number)) else value
 
 
 class Observer:

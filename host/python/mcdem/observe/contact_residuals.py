@@ -11,6 +11,7 @@ from ..results.recording import Box, Floats, Ints
 if TYPE_CHECKING:
     from .seen_scans import SeenScans
 
+MOST_PAIRS = 1_000_000  # of contacts of one grain, whose displacements are computed at once
 CLOSEST = 0.0225  # of sin^2(theta / 2): contacts closer than 17 degrees are measurement errors
 
 
@@ -127,26 +128,28 @@ def _cross_contact(seen: "SeenScans", normal: Floats, normal_force: Floats) -> F
     contact = np.concatenate([np.arange(len(normal)), np.flatnonzero(grains)])  # each from the side of its grain, then of its partner
     owner = np.concatenate([seen.of_grain(seen.grain), seen.of_grain(seen.partner)[grains]])
     outward = np.concatenate([normal, -normal[grains]])
-    # A table (grains, contacts of a grain): place of each side in it.
-    order = np.argsort(owner, kind="stable")
-    count = np.bincount(owner)
-    row = np.repeat(np.arange(np.count_nonzero(count)), count[count > 0])
-    column = np.arange(len(order)) - (np.cumsum(count) - count)[owner[order]]
-    shape = (row[-1] + 1 if len(row) else 0, count.max(initial=0))
-    direction, force = np.zeros((*shape, 3)), np.zeros(shape)
-    direction[row, column] = outward[order]
-    force[row, column] = np.maximum(normal_force[contact[order]], 0)
+    order = np.argsort(owner, kind="stable")  # by grain
+    contact, owner, outward = contact[order], owner[order], outward[order]
+    force = np.maximum(normal_force[contact], 0)
+    count = np.bincount(owner)[owner]  # contacts of the grain of each side
+    nu, moved = seen.material.poisson_ratio, np.zeros(len(owner))
+    for size in np.unique(count):
+        sides = np.flatnonzero(count == size).reshape(-1, size)  # (grains, contacts of a grain)
+        for some in np.array_split(sides, -(-sides.size * size // MOST_PAIRS)):
+            moved[some] = np.einsum("gab,gb->ga", _displacement_on_sphere(outward[some], nu), force[some])
+    moved *= (1 + nu) / (4 * np.pi * seen.material.youngs_modulus * 0.5 * seen.diameter[owner % len(seen.diameter)])
+    return np.bincount(contact, moved, len(normal)).astype(float)
 
-    nu = seen.material.poisson_ratio
+
+def _displacement_on_sphere(direction: Floats, nu: float) -> Floats:
+    """(grains, contacts, contacts) at each contact by each other one of the same grain; `direction` (grains, contacts, 3)."""
     s = direction @ direction.transpose(0, 2, 1)  # the largest arrays: cosines, then s, without copies
     s *= -0.5
     s += 0.5
     np.sqrt(np.maximum(s, CLOSEST, out=s), out=s)
-    displacement = (7 - 8 * nu) * s
+    displacement: Floats = (7 - 8 * nu) * s
     displacement += np.divide(-2 * (1 - nu), s, out=s)
     displacement -= 2 * (1 - 2 * nu)
-    own = np.arange(shape[1])
+    own = np.arange(direction.shape[1])
     displacement[:, own, own] = 0
-    moved = np.einsum("gab,gb->ga", displacement, force)[row, column]
-    moved *= (1 + nu) / (4 * np.pi * seen.material.youngs_modulus * 0.5 * seen.diameter[owner[order] % len(seen.diameter)])
-    return np.bincount(contact[order], moved, len(normal)).astype(float)
+    return displacement

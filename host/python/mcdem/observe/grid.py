@@ -1,5 +1,4 @@
 """The displacements at which recordings are compared."""
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Any
@@ -8,6 +7,7 @@ import numpy as np
 
 from ..results.names import Phase
 from ..results.recording import Bools, Floats, Recording
+from ..results.parameters import value_of, without_quotes
 from .observables import observables
 
 PHASES = Phase.load, Phase.unload
@@ -38,7 +38,7 @@ class Grid:
     # If the programme sets forces: those of the experiment at the displacements while loading [N]. Scans are then selected by force, and
     # the displacement is the observable.
     force: list[float] = field(default_factory=list)
-    force_width: float = 0  # [N]
+    force_width: float = 0.0  # [N]
     holds: list[HoldScans] = field(default_factory=list)  # of the programme, in order
 
     def is_held(self, scans: int) -> Bools:
@@ -78,7 +78,14 @@ def grid_of(recording: Recording) -> Grid:
     loading = np.count_nonzero((scans.phase == Phase.load) & ~held)
     spacing = stroke * (max(scans.cycle, default=0) + 1) / max(1, loading)
     grid = replace(grid_of_stroke(stroke, spacing), holds=holds)
-    return _with_forces(recording, grid) if any(place["by"] == "force" and not place["held"] for place in places) else grid
+    return _with_forces(recording, grid) if _sets_forces(recording) else grid
+
+
+def _sets_forces(recording: Recording) -> bool:
+    """Whether a stage of its programme other than a hold has a force."""
+    parameters = recording.parameters
+    forces = [key.removesuffix(".force") for key, text in parameters.items() if key.startswith("programme.") and key.endswith(".force") and text]
+    return any(without_quotes(value_of(parameters, f"{stage}.stage")) != "hold" for stage in forces)
 
 
 def grid_of_stroke(stroke: float, spacing: float) -> Grid:
@@ -121,10 +128,3 @@ def offsets(recording: Recording, grid: Grid) -> Floats:
     if grid.force:
         return (recording.scans.top_force[:, np.newaxis] - grid.force) / grid.force_width
     return (recording.displacement[:, np.newaxis] - grid.displacement) / grid.width
-
-
-def grid_from(values: Mapping[str, Any]) -> Grid:
-    """The inverse of dataclasses.asdict."""
-    holds = [HoldScans(**(hold | {"phase": Phase(hold["phase"])})) for hold in values["holds"]]
-    of_all: dict[str, Any] = {**values, "holds": holds}
-    return Grid(**of_all)

@@ -58,7 +58,9 @@ def _regression(seen: SeenScans, terms: Floats, values: Floats, where: Bools) ->
     for number, rows in enumerate(of_scan):
         if len(rows) >= ROWS_PER_TERM * terms.shape[1]:
             x = terms[rows]
-            fits[number] = np.linalg.lstsq(x.T @ x, x.T @ values[rows], rcond=None)[0]
+            products, right = x.T @ x, x.T @ values[rows]
+            if np.isfinite(products).all() and np.isfinite(right).all():
+                fits[number] = np.linalg.lstsq(products, right, rcond=None)[0]
     return fits
 
 

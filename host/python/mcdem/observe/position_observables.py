@@ -40,7 +40,7 @@ def fabric(seen: SeenScans) -> tuple[Floats, Floats]:
 def non_affine(seen: SeenScans) -> Floats:
     """Root mean square of the displacements since the first scan minus their best affine map, over the mean diameter."""
     before = seen.recording.scans.position[0]
-    if before.shape != seen.position.shape[1:]:
+    if before.shape != seen.position.shape[1:] or not np.isfinite(before).all() or not np.isfinite(seen.position).all():
         return np.full(len(seen), np.nan)
     grains = len(before)
     moved = (seen.position - before).transpose(1, 0, 2).reshape(grains, -1)
