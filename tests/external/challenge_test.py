@@ -152,7 +152,7 @@ def test_score(challenge):
 
 def test_sealed(mcdem, folder):
     def make(*options):
-        return subprocess.run([HERE / "challenge", "make", "--out", folder / "made", "--truth", folder / "truth.json", "--seed", "2",
+        return subprocess.run([sys.executable, HERE / "challenge", "make", "--out", folder / "made", "--truth", folder / "truth.json", "--seed", "2",
                                "--per-effect", "0", "--pairs", "0", "--per-unknown", "0", *options], capture_output=True, text=True)
 
     shutil.rmtree(folder, ignore_errors=True)
