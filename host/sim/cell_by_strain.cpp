@@ -10,7 +10,7 @@ bool CellByStrain::driven(const RunningProgramme& programme) {
     return programme.stage().kind == StageKind::move && programme.target() > programme.state.leg_begin;
 }
 
-Motion::Plan CellByStrain::plan(const RunningProgramme& programme) const {
+ProgrammeMotion::Plan CellByStrain::plan(const RunningProgramme& programme) const {
     const bool moves = programme.state.activity == Activity::move;
     Plan plan = moves ? moving(programme, slow_speed(programme)) : standing(programme);
     deform(programme, plan);

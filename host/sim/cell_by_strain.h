@@ -5,7 +5,7 @@
 
 namespace mcdem::inline sim {
 
-class CellByStrain : public Motion {
+class CellByStrain : public ProgrammeMotion {
 public:
     Plan plan(const RunningProgramme& programme) const override;
     void follow(RunningProgramme& programme, const Plan& plan, const IntervalResult& result,

@@ -51,7 +51,7 @@ Strain CellByStress::with_controlled(const RunningProgramme& programme, const St
 }
 
 /// The strains of the move change at the rate that the control has chosen for them.
-Motion::Plan CellByStress::plan(const RunningProgramme& programme) const {
+ProgrammeMotion::Plan CellByStress::plan(const RunningProgramme& programme) const {
     const ProtocolState& now = programme.state;
     const SetStress set = stress(programme);
     double steps = controlled_steps(programme, control_.interval(now.cell, set)), part = 1;

@@ -56,7 +56,7 @@ double controlled_steps(const RunningProgramme& programme, double duration) {
                       1.0, steps);
 }
 
-Motion::Plan Motion::standing(const RunningProgramme& programme) {
+ProgrammeMotion::Plan ProgrammeMotion::standing(const RunningProgramme& programme) {
     const double left =
         std::max(1.0, static_cast<double>(programme.max_standing_steps() - programme.state.activity_step));
     return {{static_cast<int>(std::min(left, most_planned_steps)), programme.state.plate_z, 0,
@@ -64,20 +64,20 @@ Motion::Plan Motion::standing(const RunningProgramme& programme) {
 }
 
 /// A move ends exactly at the waypoint.
-Motion::Plan Motion::moving(const RunningProgramme& programme, double speed, double most) {
+ProgrammeMotion::Plan ProgrammeMotion::moving(const RunningProgramme& programme, double speed, double most) {
     const StepInterval interval =
         is_smooth(programme) ? smooth(programme, speed) : straight(programme, speed, most);
     return {interval, interval.plate_velocity, std::abs(interval.plate_velocity)};
 }
 
-bool Motion::arrived(RunningProgramme& programme) const {
+bool ProgrammeMotion::arrived(RunningProgramme& programme) const {
     const double at = programme.waypoint(), scale = programme.is_cell ? 1 : programme.plate.start;
     if (std::abs(at - programme.state.plate_z) > position_rounding * scale) return false;
     programme.state.plate_z = at;
     return true;
 }
 
-double Motion::progress(const RunningProgramme& programme) const {
+double ProgrammeMotion::progress(const RunningProgramme& programme) const {
     const double begin = programme.state.leg_begin, end = programme.target();
     return end == begin ? 0 : (programme.state.plate_z - begin) / (end - begin);
 }

@@ -1,5 +1,5 @@
-// How a plate or a cell moves: to a position or a strain at a prescribed speed, or to a force or stresses
-// under control. A motion holds only constants; its state is that of the programme.
+// How a plate or a cell of a programme moves: to a position or a strain at a prescribed speed, or to a force
+// or stresses under control. A motion holds only constants; its state is that of the programme.
 #pragma once
 #include <cmath>
 
@@ -13,7 +13,7 @@ inline constexpr double most_planned_steps = 1e6;
 /// Within this distance of a level, relative to the plate's start or a strain of one, the plate has arrived.
 inline constexpr double position_rounding = 1e-12;
 
-class Motion {
+class ProgrammeMotion {
 public:
     struct Plan {
         StepInterval interval;
@@ -21,7 +21,7 @@ public:
         double fastest = 0;  ///< the largest of it and of the other strain rates
     };
 
-    virtual ~Motion() = default;
+    virtual ~ProgrammeMotion() = default;
 
     /// The next interval, without a limit to its steps.
     virtual Plan plan(const RunningProgramme& programme) const = 0;

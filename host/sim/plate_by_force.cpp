@@ -36,7 +36,7 @@ void expect_range(RunningProgramme& programme) {
 PlateByForce::PlateByForce(const Replica& replica, const PackingScale& scale)
     : control_(ForceControl::of_plate(replica, scale)) {}
 
-Motion::Plan PlateByForce::plan(const RunningProgramme& programme) const {
+ProgrammeMotion::Plan PlateByForce::plan(const RunningProgramme& programme) const {
     const ProtocolState& now = programme.state;
     const Plate& plate = programme.plate;
     const double steps = controlled_steps(programme, control_.interval(now.control, set_force(programme)));

@@ -16,7 +16,7 @@ double PlateByPosition::max_speed(const RunningProgramme& programme) const {
 
 /// Far from the grains the plate is fast; on its way down it slows down before them. A plate that pauses
 /// moves as that of an experiment, which does not wait for grains that rearrange.
-Motion::Plan PlateByPosition::plan(const RunningProgramme& programme) const {
+ProgrammeMotion::Plan PlateByPosition::plan(const RunningProgramme& programme) const {
     const ProtocolState& now = programme.state;
     if (now.activity != Activity::move) return standing(programme);
     if (programme.is_free()) {

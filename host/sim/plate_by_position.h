@@ -4,7 +4,7 @@
 
 namespace mcdem::inline sim {
 
-class PlateByPosition : public Motion {
+class PlateByPosition : public ProgrammeMotion {
 public:
     Plan plan(const RunningProgramme& programme) const override;
     void follow(RunningProgramme& programme, const Plan& plan, const IntervalResult& result,

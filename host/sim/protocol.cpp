@@ -17,7 +17,7 @@ ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const P
     }
 }
 
-const Motion& ProtocolRunner::motion() const {
+const ProgrammeMotion& ProtocolRunner::motion() const {
     const bool moves =
         state().activity == Activity::relax || controlled(programme_.stage()) == Controlled::position;
     return moves ? *moved_ : *controlled_;
@@ -43,7 +43,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::on_interval_done(const In
 
 void ProtocolRunner::record(const IntervalResult& result) {
     ProtocolState& now = programme_.state;
-    const Motion::Plan plan = motion().plan(programme_);
+    const ProgrammeMotion::Plan plan = motion().plan(programme_);
     const double step = plan.interval.step_part * programme_.time_step, duration = step * result.steps;
     now.step += result.steps;
     now.activity_step += result.steps;

@@ -52,7 +52,7 @@ public:
     bool is_possible(const ProtocolState& state) const;
 
 private:
-    const Motion& motion() const;
+    const ProgrammeMotion& motion() const;
     void record(const IntervalResult& result);
     bool settled(const IntervalResult& result, double drag, bool plate_arrived);
     std::optional<ScanTag> at_waypoint();
@@ -64,8 +64,8 @@ private:
     void next_leg();
 
     RunningProgramme programme_;
-    std::unique_ptr<const Motion> moved_;       ///< by position or strain
-    std::unique_ptr<const Motion> controlled_;  ///< by force or stress
+    std::unique_ptr<const ProgrammeMotion> moved_;       ///< by position or strain
+    std::unique_ptr<const ProgrammeMotion> controlled_;  ///< by force or stress
 };
 
 }  // namespace mcdem::sim

@@ -12,7 +12,7 @@ from mcdem import _engine as engine
 from mcdem.challenge.files import read_open_challenge
 from mcdem.challenge.make import Options, make_challenge
 from mcdem.challenge.case_simulator import CaseSimulator
-from mcdem.challenge.plan import ChallengeSize, draw_challenge, model_of
+from mcdem.challenge.plan import ChallengeSize, draw_challenge, facts_of
 from mcdem.challenge.truth import open_truth, seal_of
 from mcdem.errors import InputError
 
@@ -37,8 +37,8 @@ class Make(unittest.TestCase):
                           "size": ChallengeSize(1, 2, 2, 0, 0, 2), "effects": ["cross_contact", "stiffening"], **more})
 
     def drawn(self):
-        model = model_of(CaseSimulator(self.scene, self.options.measurement, ""))
-        return draw_challenge(self.options.size, self.options.effects, model, seal_of(self.scene.text.encode()), self.options.seed)
+        facts = facts_of(CaseSimulator(self.scene, self.options.measurement, ""))
+        return draw_challenge(self.options.size, self.options.effects, facts, seal_of(self.scene.text.encode()), self.options.seed)
 
     def interrupted(self, options, when):
         def progress(fraction):

@@ -8,22 +8,22 @@ import unittest
 
 from mcdem.challenge.outside_effects import OUTSIDE_EFFECTS
 from mcdem.challenge.case import CaseKind, in_first_half
-from mcdem.challenge.plan import CHALLENGED_EFFECTS, ChallengeSize, Model, draw_challenge
+from mcdem.challenge.plan import CHALLENGED_EFFECTS, ChallengeSize, SceneFacts, draw_challenge
 from mcdem.challenge.truth import parse_truth, seal_of, truth_text
-from mcdem.diagnosis.effects import effects, find_effect
+from mcdem.diagnosis.effects import EFFECTS, find_effect
 from mcdem.errors import InputError
 
 # Of scenes/challenge.toml; 1 for all other effects.
 SCALES = {"friction": 0.03, "adhesion": 83.45283333333333, "buoyancy": 11.5, "diameter_error": 0.02149,
           "plate_compliance": 0.00034334763948497857}
 SIGMAS = {"modulus": 0.05, "strain_offset": 0.0002149}
-MODEL = Model({effect.name: SCALES.get(effect.name, 1.0) for effect in effects()},
-              {effect.name: "no grains have it" if effect.name == "finite_strain" else "" for effect in effects()}, SIGMAS)
+FACTS = SceneFacts({effect.name: SCALES.get(effect.name, 1.0) for effect in EFFECTS},
+              {effect.name: "no grains have it" if effect.name == "finite_strain" else "" for effect in EFFECTS}, SIGMAS)
 PUBLISHED = pathlib.Path(__file__).with_name("truth.json")
 
 
-def drawn(seed, size=ChallengeSize(), tried=CHALLENGED_EFFECTS, model=MODEL):
-    return draw_challenge(size, tried, model, "scene", seed)
+def drawn(seed, size=ChallengeSize(), tried=CHALLENGED_EFFECTS, facts=FACTS):
+    return draw_challenge(size, tried, facts, "scene", seed)
 
 
 def of_kind(challenge, kind):
@@ -37,7 +37,7 @@ class Plan(unittest.TestCase):
 
     def test_the_published_challenge_is_drawn_from_its_seed(self):
         published = parse_truth(PUBLISHED.read_bytes(), PUBLISHED)
-        again = draw_challenge(ChallengeSize(20, 2, 16, 20, 6, 24), CHALLENGED_EFFECTS, MODEL, published.scene_sha256, published.seed)
+        again = draw_challenge(ChallengeSize(20, 2, 16, 20, 6, 24), CHALLENGED_EFFECTS, FACTS, published.scene_sha256, published.seed)
         without_effects = [dataclasses.replace(challenge, cases=tuple(dataclasses.replace(case, effects=()) for case in challenge.cases))
                            for challenge in (published, again)]
         self.assertEqual(*without_effects)
@@ -60,7 +60,7 @@ class Plan(unittest.TestCase):
         smallest, largest = collections.defaultdict(lambda: math.inf), collections.defaultdict(float)
         for case in of_kind(drawn(2, ChallengeSize(per_effect=40)), CaseKind.effect):
             hidden, = case.effects
-            effect, over = find_effect(hidden.name), hidden.amplitude / MODEL.scales[hidden.name]
+            effect, over = find_effect(hidden.name), hidden.amplitude / FACTS.scales[hidden.name]
             smaller, larger = sorted((abs(effect.first), abs(effect.second)))
             self.assertTrue(0.1 * smaller * (1 - 1e-9) <= abs(over) <= 1.5 * larger * (1 + 1e-9), hidden)
             self.assertTrue(effect.low - 1e-9 <= over <= effect.high + 1e-9, hidden)
@@ -83,7 +83,7 @@ class Plan(unittest.TestCase):
             for hidden in case.effects:
                 effect = find_effect(hidden.name)
                 least = min(abs(effect.first), abs(effect.second), effect.high)
-                self.assertGreaterEqual(abs(hidden.amplitude) / MODEL.scales[hidden.name], least * (1 - 1e-9))
+                self.assertGreaterEqual(abs(hidden.amplitude) / FACTS.scales[hidden.name], least * (1 - 1e-9))
 
     def test_unknown_effects_are_not_in_the_library_of_their_diagnosis(self):
         others = {one.name: (one.low, one.high, one.both_signs) for one in OUTSIDE_EFFECTS}

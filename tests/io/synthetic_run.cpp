@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 
@@ -16,8 +17,9 @@ Recording synthetic_recording(const Size& size, int replica) {
     const int side = static_cast<int>(std::ceil(std::cbrt(size.grains)));
     Recording recording;
     recording.label = "mc_dem, packing " + std::to_string(replica);
-    recording.parameters = {
-        {"grains.youngs_modulus", 23300.0}, {"contact.model", "mc_dem"}, {"seed", std::to_string(replica)}};
+    recording.parameters = {{"grains.youngs_modulus", 23300.0},
+                            {"contact.model", "mc_dem"},
+                            {"seed", static_cast<std::uint64_t>(replica)}};
     recording.box = {side * spacing, side * spacing};
     recording.plate_start = side * spacing;
     for (int i = 0; i < size.grains; ++i) recording.diameter.push_back(spacing * (1 + 0.01 * (i % 3)));

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from .. import _engine as engine
-from ..diagnosis.effects import effects
+from ..diagnosis.effects import EFFECTS
 from ..errors import InputError, RunError
 from ..experiment.experiment import Measurement
 from ..experiment.from_run import experiment_from
@@ -17,7 +17,7 @@ from ..outputs import make_folder_of, output_folder, remove_temporaries, remove_
 from .case import Challenge, ChallengeCase, Hidden
 from .case_simulator import CaseSimulator
 from .files import OpenCase, OpenChallenge, open_challenge_text, read_open_challenge
-from .plan import CHALLENGED_EFFECTS, ChallengeSize, Model, draw_challenge, model_of
+from .plan import CHALLENGED_EFFECTS, ChallengeSize, SceneFacts, draw_challenge, facts_of
 from .truth import parse_truth, seal_of, truth_text
 
 WEAKER = 0.8  # factor of the amplitudes of a case that diverged, for the next try
@@ -58,8 +58,8 @@ def _open_file(options: Options) -> str:
     return os.path.join(options.folder, "challenge.json")
 
 
-def _effects_to_try(options: Options, model: Model) -> Sequence[str]:
-    return options.effects or [name for name in CHALLENGED_EFFECTS if not model.hindrances[name]]
+def _effects_to_try(options: Options, facts: SceneFacts) -> Sequence[str]:
+    return options.effects or [name for name in CHALLENGED_EFFECTS if not facts.hindrances[name]]
 
 
 def _of_another_challenge(file: Path) -> InputError:
@@ -82,7 +82,7 @@ def _are_alike(one: Challenge, other: Challenge) -> bool:
 
 
 def _without_answer(case: ChallengeCase) -> OpenCase:
-    names = tuple(effect.name for effect in effects() if effect.name not in case.struck)
+    names = tuple(effect.name for effect in EFFECTS if effect.name not in case.struck)
     return OpenCase(case.folder, names if case.struck else None)
 
 
@@ -92,8 +92,8 @@ class _Making:
         self._sealed = read_input(options.truth) if is_there(options.truth) else None  # content of the truth file
         sealed = parse_truth(self._sealed, options.truth) if self._sealed is not None else None
         seed = options.seed if options.seed is not None else sealed.seed if sealed else secrets.randbits(64)
-        model = model_of(simulator)
-        self._challenge = draw_challenge(options.size, _effects_to_try(options, model), model, scene_sha256, seed)
+        facts = facts_of(simulator)
+        self._challenge = draw_challenge(options.size, _effects_to_try(options, facts), facts, scene_sha256, seed)
         if sealed and not _are_alike(sealed, self._challenge):
             raise _of_another_challenge(options.truth)
         self._challenge = sealed or self._challenge

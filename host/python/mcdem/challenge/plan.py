@@ -4,8 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from .. import _engine as engine
-from ..diagnosis.effects import effects as all_effects
-from ..diagnosis.effects import find_effect
+from ..diagnosis.effects import EFFECTS, find_effect
 from ..errors import InputError
 from .case import CaseKind, Challenge, ChallengeCase, Hidden
 from .case_simulator import CaseSimulator
@@ -28,22 +27,22 @@ class ChallengeSize:
     none: int = 60
     per_effect: int = 8
     pairs: int = 20
-    unknown: int = 40  # one in four with its effect removed from the library, the others with each of outside_effects() in turn
+    unknown: int = 40  # one in four with its effect removed from the library, the others with each of OUTSIDE_EFFECTS in turn
     outside_prior: int = 20  # modulus and strain_offset in turn
     packings: int = 24  # an even number
 
 
 @dataclass(frozen=True)
-class Model:
+class SceneFacts:
     """What the draws need to know of the scene, by names of effects and nuisances."""
     scales: Mapping[str, float]  # natural scales of amplitudes
     hindrances: Mapping[str, str]  # reasons why the scene cannot have an effect; empty if it can
     sigmas: Mapping[str, float]  # priors of the nuisances
 
 
-def model_of(simulator: CaseSimulator) -> Model:
+def facts_of(simulator: CaseSimulator) -> SceneFacts:
     stated = simulator.stated
-    return Model({effect.name: effect.scale(stated) for effect in all_effects()}, {effect.name: effect.hindrance(stated) for effect in all_effects()},
+    return SceneFacts({effect.name: effect.scale(stated) for effect in EFFECTS}, {effect.name: effect.hindrance(stated) for effect in EFFECTS},
                  {one.name: one.sigma for one in simulator.nuisances})
 
 
@@ -55,8 +54,8 @@ class Strength(enum.Enum):
 
 
 class Drawing:
-    def __init__(self, model: Model, seed: int) -> None:
-        self._model = model
+    def __init__(self, facts: SceneFacts, seed: int) -> None:
+        self._facts = facts
         self.random = engine.Random(seed, "challenge")
 
     def effect(self, name: str, strength: Strength) -> Hidden:
@@ -68,7 +67,7 @@ class Drawing:
         size = self._log_uniform(least, 1.5 * larger)
         has_both_signs = -effect.low >= larger
         amplitude = max(-size, effect.low) if has_both_signs and self._sign() < 0 else min(size, effect.high)
-        return Hidden(name, amplitude * self._model.scales[name])
+        return Hidden(name, amplitude * self._facts.scales[name])
 
     def outside(self, name: str, low: float, high: float, both_signs: bool) -> Hidden:
         """An effect that is in no library."""
@@ -77,12 +76,12 @@ class Drawing:
 
     def from_priors(self) -> tuple[Hidden, ...]:
         """Shifts of all nuisances."""
-        normals = self.random.normals(len(self._model.sigmas)).tolist()
-        return tuple(Hidden(name, sigma * normal) for (name, sigma), normal in zip(self._model.sigmas.items(), normals, strict=True))
+        normals = self.random.normals(len(self._facts.sigmas)).tolist()
+        return tuple(Hidden(name, sigma * normal) for (name, sigma), normal in zip(self._facts.sigmas.items(), normals, strict=True))
 
     def outside_prior(self, name: str) -> Hidden:
         sign = self._sign()
-        return Hidden(name, sign * self.random.uniform(NEAREST, FARTHEST) * self._model.sigmas[name])
+        return Hidden(name, sign * self.random.uniform(NEAREST, FARTHEST) * self._facts.sigmas[name])
 
     def _log_uniform(self, low: float, high: float) -> float:
         return float(low * (high / low) ** self.random.uniform())
@@ -135,7 +134,7 @@ def _deal_packings(cases: list[ChallengeCase], packings: int, random: engine.Ran
             cases[mine[place]] = replace(cases[mine[place]], packing=2 * (k % (packings // 2)) + half)
 
 
-def _check(size: ChallengeSize, effects: Sequence[str], model: Model) -> None:
+def _check(size: ChallengeSize, effects: Sequence[str], facts: SceneFacts) -> None:
     options = {"none": size.none, "per-effect": size.per_effect, "pairs": size.pairs, "unknown": size.unknown,
                "outside": size.outside_prior}
     problems = [f"--{option} must be 0 or more, got {value}" for option, value in options.items() if value < 0]
@@ -143,21 +142,21 @@ def _check(size: ChallengeSize, effects: Sequence[str], model: Model) -> None:
         problems.append(f"--packings must be an even number, one half for the limits and one for the score, got {size.packings}")
     for name in effects:
         if not find_effect(name):
-            known = ", ".join(effect.name for effect in all_effects())
+            known = ", ".join(effect.name for effect in EFFECTS)
             problems.append(f"--effects: {name} is not an effect; there are {known}")
-        elif model.hindrances[name]:
-            problems.append(f"--effects: {name} cannot be tried: {model.hindrances[name]}")
+        elif facts.hindrances[name]:
+            problems.append(f"--effects: {name} cannot be tried: {facts.hindrances[name]}")
     if len(effects) < 2:
         problems.append("--effects: two at least are needed, for pairs")
     if problems:
         raise InputError(problems)
 
 
-def draw_challenge(size: ChallengeSize, effects: Sequence[str], model: Model, scene: str, seed: int) -> Challenge:
+def draw_challenge(size: ChallengeSize, effects: Sequence[str], facts: SceneFacts, scene: str, seed: int) -> Challenge:
     """Nuisances are drawn from their priors. Every kind is distributed evenly over both halves, and the order of cases and packings is
     random. `scene`: SHA-256 of its text. Raises InputError if size or effects are unsuitable."""
-    _check(size, effects, model)
-    draw = Drawing(model, seed)
+    _check(size, effects, facts)
+    draw = Drawing(facts, seed)
     cases = _draw_cases(size, effects, draw)
     _deal_packings(cases, size.packings, draw.random)
     order = draw.random.shuffled(len(cases))

@@ -233,11 +233,6 @@ EFFECTS = (
 )
 
 
-def effects() -> tuple[Effect, ...]:
-    """All candidates, in the order of the documentation."""
-    return EFFECTS
-
-
 def find_effect(name: str) -> Effect | None:
     return next((effect for effect in EFFECTS if effect.name == name), None)
 

@@ -6,11 +6,12 @@ import numpy as np
 
 from ..errors import InputError
 from ..look import Path
+from ..observe.grid import Grid, cells_of
+from ..observe.observables import observables
 from ..results.names import Phase
 from ..results.recording import Floats
 from .library import Library
-from ..observe.grid import Grid, cells_of
-from ..observe.observables import observables
+from .plan import ALIKE_STROKES
 
 # Allowed difference between library and diagnosis, relative to the library, by how a name begins.
 MAY_DIFFER = {
@@ -23,7 +24,6 @@ MAY_DIFFER = {
     "mean diameter": 0.1,
 }
 GRAINS = 0.1  # the same for their number, "grains"
-ALIKE_STROKES = 0.1  # relative; the diagnosis finds a shifted zero of strain
 ALIKE_LOADS = 1.6  # factor: packings of the same kind with grains 2 % larger carry 1.5 times as much
 
 

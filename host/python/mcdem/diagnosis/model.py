@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..experiment.instrument import Instrument
 from ..observe.contact_residuals import Material
+from ..results.parameters import has_programme
 
 if TYPE_CHECKING:
     from .._engine import Scene
@@ -28,10 +29,14 @@ class Model:
         return self.base._variant(dict(self.changes)) if self.changes else self.base
 
     @cached_property
+    def texts(self) -> dict[str, str]:
+        """All keys of the scene that determine a simulation of given grains, with their values as text."""
+        return {key: text for key, text in self.scene._texts.items() if not key.startswith("packing.")}
+
+    @cached_property
     def digest(self) -> str:
-        """Of all keys of the scene that determine a simulation of given grains."""
-        texts = {key: text for key, text in self.scene._texts.items() if not key.startswith("packing.")}
-        return hashlib.sha256(repr(texts).encode()).hexdigest()
+        """Of `texts`."""
+        return hashlib.sha256(repr(self.texts).encode()).hexdigest()
 
     def __getitem__(self, key: str) -> Any:
         """The value of a key of the scene; None where it does not apply."""
@@ -51,7 +56,7 @@ class Model:
 
     @property
     def has_programme(self) -> bool:
-        return "programme.1.stage" in self._values
+        return has_programme(self._values)
 
     @property
     def stage_speeds(self) -> list[str]:

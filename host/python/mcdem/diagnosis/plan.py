@@ -1,7 +1,7 @@
 """What a diagnosis simulates and compares: the packings of an experiment, or other packings of the same kind."""
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,12 +12,12 @@ from ..experiment.experiment import Experiment
 from ..experiment.instrument import Instrument
 from ..observe.grid import Grid, grid_of
 from ..results.names import Phase
-from ..results.recording import Recording
+from ..results.parameters import has_programme
 from .effects import EFFECTS, Apply, Effect, Nuisance, find_effect, nuisances
 from .model import Model
 from .trials import Comparison, Trial
 
-ALIKE_STROKES = 0.1  # relative, of the packings of one experiment
+ALIKE_STROKES = 0.1  # relative, of packings and a library that are compared; the diagnosis finds a shifted zero of strain
 BEGUN = 0.02  # over the stroke: a scan before it is not one of its levels, even if the plate's zero is slightly wrong
 APART = 0x6C696272617279  # seeds of other packings are not those of any experiment, but for an improbable coincidence
 SEEDS_OF_A_PACKING = 1000  # apart from those of the next one
@@ -178,10 +178,6 @@ def _note_cycles(measured: Experiment, compared: Experiment, note: Note) -> None
              "the scene is the number of cycles to simulate")
 
 
-def _programme(recording: Recording) -> Mapping[str, str]:
-    return {key: text for key, text in recording.parameters.items() if key.startswith("programme.")}
-
-
 def _expect_alike(experiments: Sequence[Experiment], grid: Grid) -> None:
     """Raises InputError unless the packings of one experiment are compressed and measured in the same way."""
     first, problems = experiments[0], []
@@ -189,7 +185,7 @@ def _expect_alike(experiments: Sequence[Experiment], grid: Grid) -> None:
         if (other.measurement, other.uncertainty) != (first.measurement, first.uncertainty):
             problems.append(f"{other.name}: experiment.toml must state the same [measurement] and [uncertainty] as that of {first.name}, to be "
                             "diagnosed with it")
-        if engine.programme_text(_programme(other.recording)) != engine.programme_text(_programme(first.recording)):
+        if engine.programme_text(other.recording.parameters) != engine.programme_text(first.recording.parameters):
             problems.append(f"{other.name}: experiment.toml must state the same [[programme]] as that of {first.name}, to be diagnosed with it")
         if (stroke := grid_of(other.recording).stroke) > (1 + ALIKE_STROKES) * grid.stroke:
             problems.append(f"{other.name}: its stroke of {1e3 * stroke:.4g} mm must be within a tenth of the shortest, "
@@ -212,7 +208,7 @@ def _model_of(scene: engine.Scene, experiment: Experiment) -> Model:
     recording, scans, values = experiment.recording, experiment.recording.scans, scene._values
     if values["container.shape"] != recording.box.shape:
         raise InputError(f"{scene.name}: container.shape must be {recording.box.shape}, as in {experiment.name}: others cannot be diagnosed")
-    if "programme.1.stage" in values and not recording.has_programme:
+    if has_programme(values) and not recording.has_programme:
         raise InputError(f"{experiment.name}: experiment.toml must state the [[programme]] of the experiment, and plate.csv its time_s, for a "
                          "scene that has one")
     lowest = float(min(recording.plate_start, scans.plate_z.min()))
@@ -227,5 +223,5 @@ def _model_of(scene: engine.Scene, experiment: Experiment) -> Model:
         cycles = int(scans.cycle.max()) + 1
         changes |= {"plate.end": lowest, "protocol.scans_per_stroke": loading, "protocol.cycles": min(cycles, _simulated_cycles(scene))}
     box = recording.box
-    base = scene._variant(changes)._with_programme(_programme(recording))._with_box(box.shape, box.size_x, box.size_y)
+    base = scene._variant(changes)._with_programme(recording.parameters)._with_box(box.shape, box.size_x, box.size_y)
     return Model(base, {}, Instrument(experiment.measurement), float(recording.diameter.mean()), experiment.plate_speed)

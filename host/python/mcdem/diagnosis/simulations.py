@@ -108,8 +108,7 @@ class Simulations:
     def origin(self) -> dict[str, str]:
         """What a library depends on, by name (library_origin.py)."""
         model, stated = self.plan.model, self.plan.model.instrument.stated
-        origin = {key: text for key, text in model.scene._texts.items() if not key.startswith("packing.")}
-        origin |= {f"measurement.{name}": shortest(value) for name, value in vars(stated).items()}
+        origin = model.texts | {f"measurement.{name}": shortest(value) for name, value in vars(stated).items()}
         return origin | {
             "mean diameter": shortest(model.mean_diameter), "grains": str(len(self.plan.packings[0][1])),
             "kernels": engine.kernels_digest(), "observables": hashlib.sha256("".join(f"{one.name};" for one in observables()).encode()).hexdigest(),

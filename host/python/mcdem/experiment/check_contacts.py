@@ -6,9 +6,9 @@ import numpy as np
 
 from ..results.names import Wall
 from ..results.recording import Bools, Floats, Ints, Recording
-from .container import apart, towards_wall, wall_distance, walls_of
+from .container import apart, lengths, towards_wall, wall_distance, walls_of
 from .experiment import Experiment
-from .findings import (CONTACTS, Findings, Frame, Part, Tally, contacts_of, lengths, mean_diameter, note, odd, odd_items,
+from .findings import (CONTACTS, Findings, Frame, Part, Tally, contacts_of, mean_diameter, note, odd, odd_items,
                        placed_contacts_of, upper_median)
 
 MAX_APART = 0.15  # gap over the mean diameter, as in the contact search of simulations

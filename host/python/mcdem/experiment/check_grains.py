@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 
 from ..results.recording import Recording
-from .container import apart, floor_area, wall_distance, walls_of
+from .container import apart, floor_area, lengths, wall_distance, walls_of
 from .experiment import Experiment
-from .findings import GRAINS, Findings, Part, lengths, odd, odd_items, positions_of
+from .findings import GRAINS, Findings, Part, odd, odd_items, positions_of
 from .near_pairs import near_pairs
 
 MIN_FRACTION, MAX_FRACTION = 0.3, 0.95  # of a packing under load

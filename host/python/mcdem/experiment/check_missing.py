@@ -5,9 +5,9 @@ import numpy as np
 
 from ..results.names import Phase, Wall
 from ..results.recording import Floats, Recording
-from .container import apart, towards_wall, walls_of
+from .container import apart, lengths, towards_wall, walls_of
 from .experiment import MATERIALS, Experiment
-from .findings import CONTACTS, GRAINS, PLATE, SETTINGS, Findings, contacts_of, lengths, mean_diameter, missing, upper_median
+from .findings import CONTACTS, GRAINS, PLATE, SETTINGS, Findings, contacts_of, mean_diameter, missing, upper_median
 
 REST = 0.005  # fraction of the stroke: beyond it frame 0 is under load
 MIN_FRAMES = 4  # per stroke

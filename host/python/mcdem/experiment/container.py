@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from ..results.names import Wall
-from ..results.recording import Box, Floats
+from ..results.recording import Box, Floats, Ints
 
 
 def walls_of(box: Box) -> list[Wall]:
@@ -22,6 +22,11 @@ def container_words(box: Box) -> str:
 def floor_area(box: Box) -> float:
     """[m2]"""
     return box.size_x * box.size_y * (math.pi / 4 if box.is_cylinder else 1)
+
+
+def lengths(vectors: Floats) -> Floats:
+    """(N,) of vectors (N, 3)."""
+    return np.asarray(np.sqrt(np.einsum("ij,ij->i", vectors, vectors)))
 
 
 def apart(box: Box, start: Floats, end: Floats) -> Floats:
@@ -48,20 +53,24 @@ def from_axis(box: Box, point: Floats) -> Floats:
     return (point - (box.size_x / 2, box.size_y / 2, 0)) * (1, 1, 0)
 
 
-def wall_distance(box: Box, wall: Wall, plate_z: float, point: Floats) -> Floats:
-    """(N,) distances of points from an existing wall, negative outside."""
-    if box.is_cylinder and wall == Wall.x_min:
-        return np.asarray(box.size_x / 2 - np.linalg.norm(from_axis(box, point), axis=1))
-    place, coordinate = (0, box.size_x, 0, box.size_y, 0, plate_z)[wall], point[:, wall // 2]
-    return np.asarray(place - coordinate if wall % 2 else coordinate - place)
+def wall_distance(box: Box, wall: Wall | Ints, plate_z: float | Floats, point: Floats) -> Floats:
+    """(N,) distances of points from existing walls, negative outside; one wall and plate position [m] for all points, or (N,)."""
+    place = np.where(wall == Wall.plate, plate_z, np.array([0, box.size_x, 0, box.size_y, 0, 0])[wall])
+    coordinate = point[np.arange(len(point)), np.asarray(wall) // 2]
+    distance = np.where(np.asarray(wall) % 2, place - coordinate, coordinate - place)
+    if box.is_cylinder:
+        curved = np.broadcast_to(wall == Wall.x_min, len(point))
+        distance[curved] = box.size_x / 2 - lengths(from_axis(box, point[curved]))
+    return distance
 
 
-def towards_wall(box: Box, wall: Wall, point: Floats) -> Floats:
-    """(N, 3) unit normals from points inside towards an existing wall."""
-    if box.is_cylinder and wall == Wall.x_min:
-        out = from_axis(box, point)
+def towards_wall(box: Box, wall: Wall | Ints, point: Floats) -> Floats:
+    """(N, 3) unit normals from points inside towards existing walls: one for all points, or (N,)."""
+    normal = np.zeros(point.shape)
+    normal[np.arange(len(point)), np.asarray(wall) // 2] = np.where(np.asarray(wall) % 2, 1.0, -1.0)
+    if box.is_cylinder:
+        curved = np.broadcast_to(wall == Wall.x_min, len(point))
+        out = from_axis(box, point[curved])
         out[~out.any(axis=1)] = 1, 0, 0
-        return np.asarray(out / np.linalg.norm(out, axis=1, keepdims=True))
-    normal = np.zeros_like(point)
-    normal[:, wall // 2] = 1 if wall % 2 else -1
+        normal[curved] = out / lengths(out)[:, np.newaxis]
     return normal

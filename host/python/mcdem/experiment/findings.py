@@ -84,11 +84,6 @@ def placed_contacts_of(recording: Recording) -> Iterator[Frame]:
     return (frame for frame in contacts_of(recording) if len(frame.position))
 
 
-def lengths(vectors: Floats) -> Floats:
-    """(N,) of vectors (N, 3)."""
-    return np.asarray(np.sqrt((vectors * vectors).sum(axis=1)))
-
-
 def upper_median(values: Floats) -> float:
     """The upper one of the two middle values of an even number; NaN if there are none."""
     return float(np.partition(values, len(values) // 2)[len(values) // 2]) if len(values) else math.nan

@@ -7,6 +7,8 @@ import numpy as np
 
 from ..results.names import Phase, Wall
 from ..results.recording import NO_VECTORS, Contacts, Floats, Ints, Recording, Scans
+from .contact_averages import with_contact_averages
+from .container import lengths
 from .experiment import Measurement
 from .keyed_normal import MEASURED_DIAMETERS, MEASURED_FORCES, MEASURED_POSITIONS, keyed_normals
 
@@ -56,7 +58,7 @@ def measured(truth: Recording, instrument: Instrument, seed: int) -> Recording:
                  time=scans.time if truth.has_programme else np.full(len(scans), np.nan), plate_z=scans.plate_z + instrument.strain_offset,
                  strain=np.zeros((len(scans), 6)), position=position, rotation=(NO_VECTORS,) * len(scans), contacts=contacts, **unknown)
     seen.wall_force[:, Wall.plate, 2] = _top_force(truth, instrument)
-    _average_contacts(seen, grains, instrument.stated.force_threshold)
+    seen = with_contact_averages(seen, grains, instrument.stated.force_threshold)
     return replace(truth, diameter=truth.diameter + instrument.stated.diameter_error * noise, scans=seen, species=np.zeros(0, int),
                    species_names=())
 
@@ -85,8 +87,8 @@ def _seen(contacts: tuple[Contacts, ...], instrument: Instrument, seed: int, cen
         pair = grain.astype(np.uint64) << np.uint64(32) | partner.astype(np.int32).view(np.uint32).astype(np.uint64)
         gain *= 1 + instrument.stated.force_error * keyed_normals(seed, MEASURED_FORCES, frame, pair)
     gain = np.maximum(gain, 0)  # errors do not reverse a force
-    force = force * (gain / (1 + instrument.force_saturation * np.sqrt(np.einsum("ij,ij->i", force, force))))[:, np.newaxis]
-    there = np.sqrt(np.einsum("ij,ij->i", force, force)) >= instrument.stated.force_threshold + instrument.threshold_shift
+    force = force * (gain / (1 + instrument.force_saturation * lengths(force)))[:, np.newaxis]
+    there = lengths(force) >= instrument.stated.force_threshold + instrument.threshold_shift
     frame, grain, partner, force = frame[there], grain[there], partner[there], force[there]
     error = shift[frame, grain]
     grains = partner >= 0
@@ -130,37 +132,3 @@ def _late(force: Floats, path: Floats, lag: float) -> Floats:
         part = min(1.0, (path[after] - path[s] + lag) / step) if step else 1.0
         late[s] = force[after] + part * (force[after - 1] - force[after])
     return late
-
-
-def _average_contacts(scans: Scans, grains: int, force_threshold: float) -> None:
-    """Computes wall forces except the plate's, Z, <f> and <b> of the scans with contacts, from those above the threshold.
-
-    On walls without any contact in the recording, no contacts does not mean no force.
-    """
-    frame = np.repeat(np.arange(len(scans)), [len(one) for one in scans.contacts])
-    if not len(frame):
-        return
-    count = len(scans)
-    grain, partner, force = (np.concatenate([getattr(one, name) for one in scans.contacts]) for name in ("grain", "partner", "force"))
-    top, known = scans.top_force.copy(), np.bincount(frame, minlength=count) > 0
-    for wall in Wall:
-        at = partner == -1 - wall
-        if at.any():
-            sums = [np.bincount(frame[at], force[at, axis], count) for axis in range(3)]
-            scans.wall_force[known, wall] = -np.column_stack(sums)[known]
-    scans.wall_force[:, Wall.plate, 2] = top  # the plate's gauge also measures contacts below the threshold
-    size = np.sqrt(np.einsum("ij,ij->i", force, force))
-    counts = size >= force_threshold
-    scans.coordination_number[known] = (np.bincount(frame[counts], np.where(partner[counts] < 0, 1.0, 2.0), count) / grains)[known]
-    _means(scans.mean_force, frame[counts], size[counts])
-    branches = counts & (partner >= 0) & np.array([len(at) > 0 for at in scans.position])[frame]
-    if branches.any():
-        position = np.stack([at if len(at) else np.zeros((grains, 3)) for at in scans.position])
-        between = position[frame[branches], partner[branches]] - position[frame[branches], grain[branches]]
-        _means(scans.branch_length, frame[branches], np.sqrt(np.einsum("ij,ij->i", between, between)))
-
-
-def _means(into: Floats, frame: Floats, values: Floats) -> None:
-    """Sets the mean of each frame that has values."""
-    number = np.bincount(frame, minlength=len(into))
-    into[number > 0] = np.bincount(frame, values, len(into))[number > 0] / number[number > 0]

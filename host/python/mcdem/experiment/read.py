@@ -12,8 +12,8 @@ from ..errors import InputError, RunError
 from ..files import INTACT
 from ..look import Path, is_file, is_folder, is_there, leads_somewhere
 from ..problems import Problems
-from ..results.names import Wall
-from ..results.recording import Bools, Contacts, Floats, Recording, Scans
+from ..results.recording import Recording
+from .contact_averages import with_contact_averages
 from .contacts import read_contacts
 from .experiment import Experiment
 from .grains import read_grains
@@ -40,7 +40,7 @@ def read_experiment(folder: Path, largest: int = LARGEST_TABLE) -> Experiment:
         problems.report()
         if math.isnan(recording.plate_start):
             recording = replace(recording, plate_start=float(recording.scans.plate_z.max()))
-        averaged = average_contacts(recording.scans, len(recording.diameter), settings.measurement.force_threshold)
+        averaged = with_contact_averages(recording.scans, len(recording.diameter), settings.measurement.force_threshold)
         return replace(settings, recording=replace(recording, scans=averaged))
 
 
@@ -98,34 +98,3 @@ def _with_tables(folder: pathlib.Path, recording: Recording, modulus: float, pro
     if contacts is None or not len(recording.diameter):  # which is a problem where there are contacts
         return recording
     return read_contacts(contacts, modulus, recording, problems, largest)
-
-
-def average_contacts(scans: Scans, grains: int, force_threshold: float) -> Scans:
-    """With wall forces except the plate's, Z, <f> and <b> of the scans that have contacts.
-
-    Forces are those of walls that have any contact: on the others no contacts does not mean no force. The plate's gauge also
-    measures contacts below the threshold [N], so the top force stays.
-    """
-    measured = sorted({-1 - int(partner) for one in scans.contacts for partner in np.unique(one.partner[one.is_wall])})
-    wall_force, number, mean_force, branch = (values.copy() for values in (scans.wall_force, scans.coordination_number, scans.mean_force,
-                                                                           scans.branch_length))
-    for row, one in enumerate(scans.contacts):
-        if not len(one):
-            continue
-        for wall in measured:
-            wall_force[row, wall] = -one.force[one.partner == -1 - wall].sum(0)
-        wall_force[row, Wall.plate, 2] = scans.top_force[row]
-        magnitude = np.linalg.norm(one.force, axis=1)
-        counted = ~(magnitude < force_threshold)
-        pairs = counted & ~one.is_wall
-        number[row] = (counted.sum() + pairs.sum()) / grains
-        if counted.any():
-            mean_force[row] = magnitude[counted].mean()
-        if pairs.any() and len(scans.position[row]):
-            branch[row] = _branches(scans.position[row], one, pairs).mean()
-    return replace(scans, wall_force=wall_force, coordination_number=number, mean_force=mean_force, branch_length=branch)
-
-
-def _branches(position: Floats, contacts: Contacts, which: Bools) -> Floats:
-    """Distances of centres [m]."""
-    return np.asarray(np.linalg.norm(position[contacts.partner[which]] - position[contacts.grain[which]], axis=1))

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..experiment.container import apart, lengths, towards_wall, wall_distance
 from ..results.names import Wall
-from ..results.recording import Box, Floats, Ints
+from ..results.recording import Floats
 
 if TYPE_CHECKING:
     from .seen_scans import SeenScans
@@ -45,42 +46,6 @@ class ContactResiduals:
         return self.implied - self.measured
 
 
-def apart(box: Box, vectors: Floats) -> Floats:
-    """Vectors between points (.., 3); in a periodic container those to the nearest image [m]."""
-    if not box.is_periodic:
-        return vectors
-    size = np.array([box.size_x, box.size_y])
-    vectors = vectors.copy()
-    vectors[..., :2] -= np.rint(vectors[..., :2] / size) * size
-    return vectors
-
-
-def towards_wall(box: Box, wall: Ints, point: Floats) -> Floats:
-    """(C, 3) unit normals from the points (C, 3) towards their walls (C,)."""
-    normal = np.zeros(point.shape)
-    normal[np.arange(len(wall)), wall // 2] = np.where(wall % 2, 1.0, -1.0)
-    if box.is_cylinder:
-        curved = wall == Wall.x_min
-        out = point[curved, :2] - (box.size_x / 2, box.size_y / 2)
-        length = np.sqrt(np.einsum("ij,ij->i", out, out))
-        out = np.where(length[:, np.newaxis] > 0, out / np.where(length > 0, length, 1)[:, np.newaxis], (1.0, 0.0))
-        normal[curved] = np.column_stack([out, np.zeros(len(out))])
-    return normal
-
-
-def wall_distance(box: Box, wall: Ints, plate_z: Floats, point: Floats) -> Floats:
-    """(C,) distances of points from their walls, negative outside; the plate is level at plate_z (C,) [m]."""
-    place = np.array([0, box.size_x, 0, box.size_y, 0, 0])[wall]
-    place = np.where(wall == Wall.plate, plate_z, place)
-    coordinate = point[np.arange(len(wall)), wall // 2]
-    distance = np.where(wall % 2, place - coordinate, coordinate - place)
-    if box.is_cylinder:
-        curved = wall == Wall.x_min
-        out = point[curved, :2] - (box.size_x / 2, box.size_y / 2)
-        distance[curved] = box.size_x / 2 - np.sqrt(np.einsum("ij,ij->i", out, out))
-    return distance
-
-
 def contact_residuals(seen: "SeenScans") -> ContactResiduals:
     """Of all contacts of scans with positions."""
     box, radius = seen.box, 0.5 * seen.diameter
@@ -88,8 +53,8 @@ def contact_residuals(seen: "SeenScans") -> ContactResiduals:
     here = radius[seen.grain]
     normal, gap, reduced_radius = np.empty(seen.force.shape), np.empty(len(here)), np.empty(len(here))
 
-    between = apart(box, seen.position[seen.scan[grains], seen.partner[grains]] - seen.centre[grains])
-    distance = np.sqrt(np.einsum("ij,ij->i", between, between))
+    between = apart(box, seen.centre[grains], seen.position[seen.scan[grains], seen.partner[grains]])
+    distance = lengths(between)
     there = radius[seen.partner[grains]]
     is_apart = distance > 0
     normal[grains] = np.where(is_apart[:, np.newaxis], between / np.where(is_apart, distance, 1)[:, np.newaxis], (0.0, 0.0, 1.0))
@@ -108,7 +73,7 @@ def contact_residuals(seen: "SeenScans") -> ContactResiduals:
     modulus = np.where(walls, _reduced_modulus(seen.material, True), _reduced_modulus(seen.material, False))
     size = 3 * np.abs(normal_force) / (4 * modulus * reduced_radius**2)
     implied = np.copysign(np.cbrt(size * size), normal_force)
-    return ContactResiduals(normal, normal_force, np.sqrt(np.einsum("ij,ij->i", tangential, tangential)), reduced_radius, implied,
+    return ContactResiduals(normal, normal_force, lengths(tangential), reduced_radius, implied,
                             -gap / reduced_radius, _cross_contact(seen, normal, normal_force) / reduced_radius)
 
 

@@ -1,9 +1,9 @@
 """Observables of contact forces without positions: forces on walls, and their distribution."""
 import numpy as np
 
+from ..experiment.container import towards_wall
 from ..results.names import Wall
 from ..results.recording import Floats
-from .contact_residuals import towards_wall
 from .observables import observed
 from .seen_scans import SeenScans
 

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from ..experiment.plate import scan_places
 from ..results.names import Phase
-from ..results.recording import Bools, Floats, Recording
 from ..results.parameters import value_of, without_quotes
+from ..results.recording import Bools, Floats, Recording
 from .observables import observables
 
 PHASES = Phase.load, Phase.unload
@@ -69,9 +70,8 @@ def cells_each(count: int) -> int:
 
 def grid_of(recording: Recording) -> Grid:
     """Four displacements of the recording's stroke; the width covers at least three scans."""
-    from .. import _engine
     scans = recording.scans
-    places = _engine.scan_places(recording.parameters, recording.plate_start) if recording.has_programme else []
+    places = scan_places(recording) if recording.has_programme else []
     stroke = float(max([0.0, *recording.displacement]))
     holds = _holds_of(recording, places)
     held = Grid([], 0, 0, holds=holds).is_held(len(scans))

@@ -1,9 +1,9 @@
 """Observables of the difference between implied and measured overlaps, between grains and at walls."""
 import numpy as np
 
+from ..experiment.container import apart, into_cell, lengths
 from ..results.names import Wall
 from ..results.recording import Bools, Floats, Ints
-from .contact_residuals import apart
 from .observables import observed
 from .seen_scans import SeenScans
 
@@ -33,20 +33,15 @@ def _overlapping(seen: SeenScans) -> tuple[Ints, Ints, Ints]:
     """Scan and grains of all pairs that overlap clearly. One tree has the grains of all scans, far apart from one another along z."""
     from scipy.spatial import cKDTree  # pages, which list the observables, do without it
     count, box, largest = len(seen.diameter), seen.box, float(seen.diameter.max())
-    position = seen.position.copy()
-    size = None
-    if box.is_periodic:
-        size = [box.size_x, box.size_y, 0]
-        position[..., :2] %= size[:2]
-        position[..., :2][position[..., :2] >= size[:2]] = 0  # rounding
-    step = position[..., 2].max() - position[..., 2].min() + 2 * largest
-    position[..., 2] += step * np.arange(len(seen))[:, np.newaxis]
-    pairs = cKDTree(position.reshape(-1, 3), boxsize=size).query_pairs(largest, output_type="ndarray")
+    position = into_cell(box, seen.position.reshape(-1, 3))
+    step = np.ptp(position[:, 2]) + 2 * largest
+    position[:, 2] += step * np.repeat(np.arange(len(seen)), count)
+    size = [box.size_x, box.size_y, 0] if box.is_periodic else None
+    pairs = cKDTree(position, boxsize=size).query_pairs(largest, output_type="ndarray")
     scan, (i, j) = pairs[:, 0] // count, pairs.T % count
     a, b = seen.diameter[i], seen.diameter[j]
     reach = 0.5 * (a + b) - CLEAR_OVERLAP * 0.5 * a * b / (a + b)
-    between = apart(box, seen.position[scan, j] - seen.position[scan, i])
-    near = np.einsum("ij,ij->i", between, between) < reach * reach
+    near = lengths(apart(box, seen.position[scan, i], seen.position[scan, j])) < reach
     return scan[near], i[near], j[near]
 
 

@@ -1,6 +1,7 @@
 """Observables of contact forces and positions: load through sections, directions, gradients, displacements, friction."""
 import numpy as np
 
+from ..experiment.container import lengths
 from ..results.names import Wall
 from ..results.recording import Bools, Floats
 from .observables import observed
@@ -88,7 +89,7 @@ def wall_friction(seen: SeenScans) -> tuple[Floats, Floats]:
 def torque_imbalance(seen: SeenScans) -> Floats:
     """Over the radius of each grain: the torques on a grain at rest cancel. Both grains of a contact have the same one."""
     torque = np.cross(seen.residuals.normal, seen.force)
-    size = np.sqrt(np.einsum("ij,ij->i", torque, torque))
+    size = lengths(torque)
     grains, shape = ~seen.is_wall, (len(seen), len(seen.diameter))
     owner = np.concatenate([seen.of_grain(seen.grain), seen.of_grain(seen.partner)[grains]])
     twice = np.concatenate([torque, torque[grains]])

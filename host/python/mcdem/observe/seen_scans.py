@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ..experiment.container import lengths
 from ..results.names import Wall
 from ..results.recording import Bools, Box, Floats, Ints, Recording
 from .contact_residuals import ContactResiduals, Material, contact_residuals
@@ -69,8 +70,7 @@ class SeenScans:
     @cached_property
     def magnitude(self) -> Floats:
         """(C,) of the force [N]."""
-        magnitude: Floats = np.sqrt(np.einsum("ij,ij->i", self.force, self.force))
-        return magnitude
+        return lengths(self.force)
 
     @cached_property
     def is_wall(self) -> Bools:

@@ -23,7 +23,7 @@ def typed_value(text: str) -> object:
         return text
 
 
-def has_programme(parameters: Parameters) -> bool:
+def has_programme(parameters: Mapping[str, object]) -> bool:
     """Whether the recording followed a [[programme]]."""
     return "programme.1.stage" in parameters
 
