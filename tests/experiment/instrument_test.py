@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 from recordings import recording_of
+from small_run import AT_REST, SMALL, made_run
 
 from mcdem.experiment.experiment import Measurement
 from mcdem.experiment.instrument import Instrument, measured
-from mcdem.results import NO_CONTACTS, Box, Contacts, Phase, Wall
+from mcdem.results import NO_CONTACTS, Box, Contacts, Phase, Wall, read_run
 
 GRAINS, SCANS = 400, 5
 FLOOR = -1 - Wall.floor
@@ -49,6 +50,16 @@ class Perfect(unittest.TestCase):
             if scan:
                 np.testing.assert_allclose(seen.scans.wall_force[scan, Wall.floor], -was.force[was.partner == FLOOR].sum(axis=0), rtol=1e-12)
         self.assertTrue(np.isnan(seen.scans.packing_fraction).all() and np.isnan(seen.scans.contacts[1].overlap).all())
+
+    def test_averages_are_those_of_the_engine(self):
+        """Also where contacts cross the sides of a periodic container."""
+        for shape in ("box", "periodic"):
+            true = read_run(made_run(SMALL, (AT_REST, ("container.shape", shape))), contacts=True, positions=True).recordings[1]
+            seen = measured(true, Instrument(), 1).scans
+            for name in ("branch_length", "mean_force", "coordination_number"):
+                of_engine = getattr(true.scans, name)[-3:]
+                self.assertGreater(of_engine.min(), 0)
+                np.testing.assert_allclose(getattr(seen, name)[-3:], of_engine, rtol=1e-5, err_msg=f"{shape}: {name}")  # positions as float
 
     def test_works_without_positions_and_contacts(self):
         noisy = Instrument(Measurement(1e-4, 5e-5, 0.05, 0.02), 0.03, -0.01, 0.002, 1e-4)

@@ -4,11 +4,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..results.names import Wall
-from ..results.recording import Floats, Ints, Scans
-from .container import lengths
+from ..results.recording import Box, Floats, Ints, Scans
+from .container import apart, lengths
 
 
-def with_contact_averages(scans: Scans, grains: int, force_threshold: float) -> Scans:
+def with_contact_averages(scans: Scans, box: Box, grains: int, force_threshold: float) -> Scans:
     """With wall forces except the plate's, Z, <f> and <b> of the scans that have contacts, from those at or above the threshold [N].
 
     Forces are those of walls that have any contact: on the others no contacts does not mean no force. The plate's gauge also
@@ -30,7 +30,7 @@ def with_contact_averages(scans: Scans, grains: int, force_threshold: float) -> 
     counted = ~(size < force_threshold)
     number[known] = (np.bincount(frame[counted], np.where(partner[counted] < 0, 1.0, 2.0), count) / grains)[known]
     placed = np.array([len(at) > 0 for at in scans.position])[frame]
-    branch = lengths(np.concatenate([at[np.maximum(one.partner, 0)] - at[one.grain] if len(at) else np.zeros(one.force.shape)
+    branch = lengths(np.concatenate([apart(box, at[one.grain], at[np.maximum(one.partner, 0)]) if len(at) else np.zeros(one.force.shape)
                                      for at, one in zip(scans.position, scans.contacts)]))
     branches = counted & placed & (partner >= 0)
     return replace(scans, wall_force=wall_force, coordination_number=number,

@@ -58,7 +58,7 @@ def measured(truth: Recording, instrument: Instrument, seed: int) -> Recording:
                  time=scans.time if truth.has_programme else np.full(len(scans), np.nan), plate_z=scans.plate_z + instrument.strain_offset,
                  strain=np.zeros((len(scans), 6)), position=position, rotation=(NO_VECTORS,) * len(scans), contacts=contacts, **unknown)
     seen.wall_force[:, Wall.plate, 2] = _top_force(truth, instrument)
-    seen = with_contact_averages(seen, grains, instrument.stated.force_threshold)
+    seen = with_contact_averages(seen, truth.box, grains, instrument.stated.force_threshold)
     return replace(truth, diameter=truth.diameter + instrument.stated.diameter_error * noise, scans=seen, species=np.zeros(0, int),
                    species_names=())
 

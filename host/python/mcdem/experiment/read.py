@@ -40,7 +40,7 @@ def read_experiment(folder: Path, largest: int = LARGEST_TABLE) -> Experiment:
         problems.report()
         if math.isnan(recording.plate_start):
             recording = replace(recording, plate_start=float(recording.scans.plate_z.max()))
-        averaged = with_contact_averages(recording.scans, len(recording.diameter), settings.measurement.force_threshold)
+        averaged = with_contact_averages(recording.scans, recording.box, len(recording.diameter), settings.measurement.force_threshold)
         return replace(settings, recording=replace(recording, scans=averaged))
 
 

@@ -83,7 +83,7 @@ def export_replica(replica, folder, is_chosen):
 def is_own(file):
     """Whether an export has written it: a grid of this version with the properties of a scan."""
     try:
-        with h5py.File(file, "r", locking=False) as grid:
+        with open(file, "rb") as data, h5py.File(data, "r") as grid:
             return list(grid["VTKHDF"].attrs["Version"]) == VERSION and SCAN_FIELDS <= set(grid["VTKHDF/FieldData"])
     except (AttributeError, KeyError, OSError, RuntimeError, TypeError, ValueError):  # of others
         return False

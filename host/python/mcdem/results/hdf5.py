@@ -4,9 +4,11 @@ InputError for wrong content, RunError if the system refuses to read. HDF5 check
 """
 import contextlib
 import errno
+import io
 import math
 import os
 import re
+import traceback
 from collections.abc import Iterator
 from types import TracebackType
 from typing import Any, NoReturn
@@ -21,7 +23,6 @@ from ..files import INTACT, expect_regular
 
 DAMAGED = "; the file is damaged or was not written by this program: restore it from a copy or run again"
 ELSEWHERE = ": lies outside this file: mcdem never writes external links; use a file that contains all its data"
-NO_LOOK = "can't retrieve stat info for file"  # of a system that refuses to tell about it; HDF5 does not say why
 MAX_NUMBERS, MAX_TEXT_SIZE = 1000, 1 << 20  # of an attribute; a larger one indicates damage
 # Deflate compresses at most 1032:1. A table that claims more than its file can contain is damaged.
 MAX_BYTES_PER_BYTE, SMALL_TABLE = 1100, 1 << 20
@@ -30,26 +31,28 @@ MAX_BYTES_PER_BYTE, SMALL_TABLE = 1100, 1 << 20
 def fail(where: str, what: str, error: Exception | None = None, reasoned: bool = True) -> NoReturn:
     """Raises the error with its reason: that of the system, otherwise (`reasoned`) the innermost one of the library."""
     text = str(error or "")
-    system = re.search("error message = '([^']*)'", text)
+    system = errno.ENOMEM if isinstance(error, MemoryError) or "memory allocation failed" in text else getattr(error, "errno", None)
     if system:
-        raise RunError(f"{where}: {what}: {system[1]}{INTACT}") from error
-    if isinstance(error, MemoryError) or "memory allocation failed" in text:
-        raise RunError(f"{where}: {what}: {os.strerror(errno.ENOMEM)}{INTACT}") from error
+        raise RunError(f"{where}: {what}: {os.strerror(system)}{INTACT}") from error
     reason = re.search(r"\((.*)\)", text, re.DOTALL) if reasoned else None
-    if NO_LOOK in text:
-        raise RunError(f"{where}: {what}: {NO_LOOK}{INTACT}") from error
     raise InputError(f"{where}: {what}{f' ({reason[1]})' if reason else ''}{DAMAGED}") from error
 
 
-@contextlib.contextmanager
-def failing(where: str, what: str, reasoned: bool = True) -> Iterator[None]:
-    """Damaged files raise exceptions of many types in h5py."""
-    try:
-        yield
-    except (InputError, RunError):
-        raise
-    except Exception as error:
-        fail(where, what, error, reasoned)
+class _Bytes(io.FileIO):
+    """What HDF5 reads from. HDF5 itself crashes at its end where the system refuses to close a file, and does not tell h5py why a read failed."""
+
+    error: OSError | None = None  # of the first read that the system refused
+
+    def readinto(self, buffer: Any) -> int:
+        """Fills the buffer; less at the end of the file."""
+        rest, filled = memoryview(buffer), 0
+        try:
+            while filled < len(rest) and (count := super().readinto(rest[filled:])):
+                filled += count
+        except OSError as error:
+            self.error = self.error or error
+            raise
+        return filled
 
 
 class File:
@@ -58,22 +61,46 @@ class File:
     def __init__(self, path: str) -> None:
         expect_regular(path)
         self.path = path
-        with failing(path, "cannot be opened as HDF5"):
-            self._file: Any = h5py.File(path, "r", locking=False)
-        self._size = os.stat(path).st_size
+        try:
+            self._bytes = _Bytes(path)
+        except OSError as error:
+            fail(path, "cannot be opened", error)
+        try:
+            with self._failing(path, "cannot be opened as HDF5"):
+                self._file: Any = h5py.File(self._bytes, "r")
+                self._size = os.fstat(self._bytes.fileno()).st_size
+        except BaseException:
+            self._close()
+            raise
+
+    @contextlib.contextmanager
+    def _failing(self, where: str, what: str, reasoned: bool = True) -> Iterator[None]:
+        """Damaged files raise exceptions of many types in h5py."""
+        try:
+            yield
+        except (InputError, RunError):
+            raise
+        except Exception as error:
+            traceback.clear_frames(error.__traceback__)  # what they hold of HDF5 must be closed before Python ends
+            fail(where, what, self._bytes.error or error, reasoned)
 
     def __enter__(self) -> "File":
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self._file.close()
+        self._close()
+
+    def _close(self) -> None:
+        with contextlib.suppress(OSError):  # nothing was written
+            self._bytes.close()
 
     def where(self, name: str) -> str:
         return f"{self.path}: {name}"
 
     def _link(self, name: str) -> Any:
         """None if nothing is there."""
-        with failing(self.where(name), "cannot be looked for"):
+        with self._failing(self.where(name), "cannot be looked for"):
             return self._file.get(name, getlink=True)
 
     def exists(self, name: str) -> bool:
@@ -87,30 +114,30 @@ class File:
                 break
             if not isinstance(link, h5py.HardLink):
                 raise InputError(self.where(part) + ELSEWHERE)
-        with failing(self.where(name), "cannot be found"):
+        with self._failing(self.where(name), "cannot be found"):
             return self._file[name]
 
     def count(self, group: str) -> int:
         """Number of the objects in a group."""
-        with failing(self.where(group), "cannot be listed"):
+        with self._failing(self.where(group), "cannot be listed"):
             return len(list(self._object(group)))
 
     def has_attribute(self, name: str, attribute: str) -> bool:
         if not self.exists(name):
             return False
         found = self._object(name)
-        with failing(self.where(name), "cannot be looked for"):
+        with self._failing(self.where(name), "cannot be looked for"):
             return attribute in found.attrs
 
     def _attribute(self, name: str, attribute: str) -> tuple[Any, int, Any]:
         """Its type, number of values, and values."""
         found, where = self._object(name), self.where(name)
-        with failing(where, f"attribute '{attribute}' cannot be found"):
+        with self._failing(where, f"attribute '{attribute}' cannot be found"):
             handle = found.attrs.get_id(attribute)
             kind, count = handle.get_type(), handle.get_space().get_simple_extent_npoints()
         if count > MAX_NUMBERS or kind.get_size() > MAX_TEXT_SIZE:
             fail(where, f"attribute '{attribute}' is too long")
-        with failing(where, f"attribute '{attribute}' cannot be read"):
+        with self._failing(where, f"attribute '{attribute}' cannot be read"):
             return kind, count, found.attrs[attribute] if count else ()
 
     def text_attribute(self, name: str, attribute: str) -> str:
@@ -136,7 +163,7 @@ class File:
         found, where = self._object(name), self.where(name)
         if not isinstance(found, h5py.Dataset):
             fail(where, "cannot be found")
-        with failing(where, "has no type"):
+        with self._failing(where, "has no type"):
             elsewhere, kind, shape = bool(found.external) or found.is_virtual, found.dtype, found.shape
         if elsewhere:
             raise InputError(where + ELSEWHERE)
@@ -148,7 +175,7 @@ class File:
             fail(where, "has rows of another size than expected")
         if kind.hasobject:
             fail(where, "must hold texts of fixed length" if h5py.check_string_dtype(kind) else "cannot be read")
-        with failing(where, "cannot be read", reasoned=False):
+        with self._failing(where, "cannot be read", reasoned=False):
             values: NDArray[Any] = found[()]
         return values
 
