@@ -17,6 +17,7 @@ from mcdem.experiment.experiment import Measurement
 from mcdem.experiment.from_run import experiment_from
 from mcdem.experiment.read import read_experiment
 from mcdem.experiment.write import write_experiment
+from mcdem.results.recording import NO_CONTACTS, NO_VECTORS
 
 SMALL = """name = "small"
 [box]
@@ -85,6 +86,27 @@ class Diagnoses(unittest.TestCase):
         experiments = [read_experiment(self.folder / experiment)]
         simulations = make_simulations(self.scene, experiments, self.folder / store, options, listener=listener)
         return diagnose(self.scene, simulations, options, listener), listener
+
+    def curve(self, name, factor):
+        """An experiment with only the force on its plate, times a factor."""
+        whole = read_experiment(self.folder / "plain")
+        scans = whole.recording.scans
+        none = replace(scans, position=(NO_VECTORS,) * len(scans), contacts=(NO_CONTACTS,) * len(scans),
+                       wall_force=factor * scans.wall_force)
+        recording = replace(whole.recording, scans=none, diameter=np.zeros(0))
+        write_experiment(self.folder / name, replace(whole, name=name, recording=recording, measurement=Measurement()), gzip=False)
+
+    def test_a_curve_alone_is_compared_with_packings_that_are_drawn(self):
+        """The packing of the curve is none of those drawn. Thirty times the force cannot be another packing."""
+        self.curve("curve", 1)
+        plain, listener = self.diagnosed("curve", FEW)
+        self.assertTrue(any("packings are drawn" in note for note in listener.notes), listener.notes)
+        self.assertEqual((plain.verdict, len(plain.not_measured)), (Verdict.no_gap, 2))
+        self.assertNotIn("half the noise", listener.stages)
+        self.curve("stiff", 30)
+        stiff, _ = self.diagnosed("stiff", FEW)
+        self.assertNotIn(stiff.verdict, (Verdict.no_gap, Verdict.effect))
+        self.assertTrue(any("measure contact forces, with the positions" in step.what for step in stiff.next), stiff.next)
 
     def with_pauses(self, speed):
         """The plate is said to pause for 0.2 s at this speed [m/s]. The candidates are two laws of adhesion, which differ only in their

@@ -10,6 +10,7 @@ from lattice import first_scans, lattice, with_measurement, with_recording, with
 
 from mcdem.diagnosis.needed import needed_to_diagnose
 from mcdem.results import NO_CONTACTS
+from mcdem.results.recording import NO_VECTORS
 
 
 class Needed(unittest.TestCase):
@@ -25,7 +26,7 @@ class Needed(unittest.TestCase):
     def test_each_lack_is_told_with_its_remedy(self):
         without_rest = tuple(one if s else np.zeros((0, 3)) for s, one in enumerate(lattice().recording.scans.position))
         for spoilt, found in (
-                (with_scans(lattice(), position=without_rest), "lattice: grains.csv must have the positions of frame 0: simulations start"),
+                (with_scans(lattice(), position=without_rest), "lattice: grains.csv must have the positions of frame 0, from which simulations start"),
                 (with_recording(lattice(), plate_start=0.087), "lattice: plate.csv must have loading frames below plate.start"),
                 (with_scans(lattice(), phase=np.ones(9, int)), "lattice: plate.csv must have loading frames below plate.start"),
                 (first_scans(lattice(), 1), "lattice: plate.csv must have loading frames below plate.start"),
@@ -34,6 +35,10 @@ class Needed(unittest.TestCase):
             with self.subTest(found):
                 text, = self.needed(spoilt)
                 self.assertTrue(text.startswith(found), text)
+
+    def test_a_curve_needs_no_grains(self):
+        curve = with_scans(with_measurement(lattice(), position_error=0.0, force_error=0.0), position=(NO_VECTORS,) * 9, contacts=(NO_CONTACTS,) * 9)
+        self.assertEqual(self.needed(curve), [])
 
     def test_errors_of_forces_need_contacts(self):
         bare = with_scans(with_measurement(lattice(), force_error=0.0), contacts=(NO_CONTACTS,) * 9)

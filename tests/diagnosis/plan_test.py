@@ -1,18 +1,21 @@
 """What a diagnosis takes from an experiment: cycles, candidates, the motion of the plate. plan_test.py"""
 import functools
+import pathlib
+import tempfile
 import unittest
 from dataclasses import replace
 
 import numpy as np
-from small_trials import MEASUREMENT, packing, scene
+from small_trials import MEASUREMENT, TEXT, packing, scene
 
 from mcdem import _engine as engine
 from mcdem.diagnosis.effects import EFFECTS
 from mcdem.diagnosis.plan import plan_of, plan_of_others
 from mcdem.errors import InputError
-from mcdem.experiment.experiment import Experiment, other_materials
+from mcdem.experiment.experiment import Experiment, Measurement, other_materials
 from mcdem.observe.observation import observe
 from mcdem.results.engine_run import run_of
+from mcdem.results.recording import NO_CONTACTS, NO_VECTORS
 
 CYCLES = {cycles: scene(protocol__scan_at_start=True, protocol__cycles=cycles, protocol__stop_at_scans=True) for cycles in (1, 2)}
 
@@ -85,9 +88,65 @@ class Models(unittest.TestCase):
 
     def test_of_others_have_other_packings_and_the_scenes_plate(self):
         made = plan_of_others(CYCLES[1], experiment(1), 2, (), 4, 1, 9)
-        self.assertEqual([len(one) for _, one in made.packings], [18, 18])
-        self.assertNotEqual(made.packings[0][1].digest, made.packings[1][1].digest)
+        self.assertEqual([[len(start) for start in one.starts] for one in made.packings], [[18], [18]])
+        self.assertNotEqual(made.packings[0].starts[0].digest, made.packings[1].starts[0].digest)
         self.assertAlmostEqual(made.comparison.grid.stroke, 0.01, 12)
+
+
+def of_plate(one, **uncertainty):
+    """Only its curve."""
+    scans = one.recording.scans
+    bare = replace(scans, position=(NO_VECTORS,) * len(scans), contacts=(NO_CONTACTS,) * len(scans))
+    return replace(one, recording=replace(one.recording, scans=bare, diameter=np.zeros(0)), measurement=Measurement(), uncertainty=uncertainty)
+
+
+class WithoutGrains(unittest.TestCase):
+    """Packings are drawn for an experiment that measured only the plate."""
+
+    def test_every_replicate_has_a_packing_of_its_own(self):
+        notes = []
+        curve = of_plate(experiment(1))
+        drawn = plan(1, curve, notes)
+        self.assertTrue(drawn.drawn)
+        self.assertIn("packings are drawn as the scene generates them", notes[0])
+        trials = drawn.baseline()
+        self.assertEqual(len({trial.packing.digest for trial in trials}), 8)
+        self.assertEqual({trial.jitter for trial in trials}, {0})
+        again = plan(1, curve).library()
+        for row, trial in zip(drawn.paired_rows() * 2, again[8:16], strict=True):  # paired runs begin with the same grains
+            self.assertEqual((trial.packing.digest, trial.seed), (trials[row].packing.digest, trials[row].seed))
+        other = plan_of(CYCLES[1], [curve], (), 8, 4, 2, False, print)
+        self.assertFalse({start.digest for start in other.packings[0].starts} & {trial.packing.digest for trial in trials})
+
+    def test_repeated_tests_have_other_packings(self):
+        curve = of_plate(experiment(1))
+        twice = plan_of(CYCLES[1], [curve, curve], (), 8, 4, 1, False, print)
+        self.assertEqual(len({trial.packing.digest for trial in twice.baseline()}), 16)
+
+    def test_the_height_of_a_packing_is_uncertain(self):
+        diameters = np.concatenate([start.diameter for start in plan(1, of_plate(experiment(1))).packings[0].starts])
+        sigmas = [{one.name: one.sigma for one in plan(1, measured).nuisances}["strain_offset"]
+                  for measured in (experiment(1), of_plate(experiment(1)), of_plate(experiment(1), **{"plate.start": 3e-4}))]
+        np.testing.assert_allclose(sigmas, [0.01 * experiment(1).recording.diameter.mean(), 0.1 * diameters.mean(), 3e-4])
+
+    def test_libraries_are_of_as_many_packings(self):
+        made = plan_of_others(CYCLES[1], of_plate(experiment(1)), 4, (), 2, 1, 1)
+        self.assertEqual((len(made.packings), len(made.packings[0].starts), made.replicates, made.pairs), (1, 8, 8, 4))
+        own = plan(1, of_plate(experiment(1)))
+        self.assertEqual([start.digest for start in made.packings[0].starts], [start.digest for start in own.packings[0].starts])
+
+    def test_experiments_with_and_without_grains_are_refused(self):
+        with self.assertRaisesRegex(InputError, "must have the positions of frame 0, or not, as measured"):
+            plan_of(CYCLES[1], [experiment(1), of_plate(experiment(1))], (), 8, 4, 1, False, print)
+
+    def test_scenes_with_a_file_of_grains_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "grains.csv"
+            position = np.column_stack([0.02 * np.arange(1, 3), np.full((2, 2), 0.02)])
+            file.write_text("x_m,y_m,z_m,diameter_m\n" + "".join(f"{x},{y},{z},0.015\n" for x, y, z in position))
+            base = engine.Scene.parse(TEXT.replace("count = 18\npacking_fraction = 0.52", f'file = "{file}"'))
+            with self.assertRaisesRegex(InputError, "packing.file must be left out for measured, whose grains were not measured"):
+                plan_of(base, [of_plate(experiment(1))], (), 8, 4, 1, False, print)
 
 
 class Packings(unittest.TestCase):

@@ -8,6 +8,7 @@ from small_trials import MEASUREMENT, TEXT, Small, mirrored, packing, scene
 from mcdem import _engine as engine
 from mcdem.diagnosis.effects import EFFECTS, find_effect, nuisances
 from mcdem.diagnosis.model import Model
+from mcdem.diagnosis.plan import Packing
 from mcdem.diagnosis.plate_motion import neglected_motion
 from mcdem.diagnosis.simulations import Simulations
 from mcdem.experiment.experiment import Experiment
@@ -42,7 +43,7 @@ class Libraries(unittest.TestCase):
         np.testing.assert_array_equal(fresh.observe(*tilted), rows[7:11])
 
     def test_are_made_of_every_packing(self):
-        packings = [(self.small.model, packing()), (self.small.model, mirrored())]
+        packings = [Packing(self.small.model, [one]) for one in (packing(), mirrored())]
         simulations = self.simulations("force_bias", packings=packings, replicates=2, pairs=1)
         rows = simulations.library()
         self.assertEqual((simulations.plan.paired_rows(), len(rows)), ([0, 2], 2 * 2 + 2 * 2))  # one of each packing
@@ -64,7 +65,7 @@ class Libraries(unittest.TestCase):
     def test_failures_have_a_cause_and_belong_to_an_effect(self):
         """The zero of strain is the instrument's: its trials look at the simulations of the baseline."""
         model = self.small.model.with_keys({"numerics.overlap_limit": 1e-4})
-        simulations = self.simulations("friction", packings=[(model, packing())], nuisances=nuisances(model, {}), replicates=2, pairs=1)
+        simulations = self.simulations("friction", packings=[Packing(model, [packing()])], nuisances=nuisances(model, {}), replicates=2, pairs=1)
         simulations.library()
         self.assertEqual(set(simulations.causes_of_failure), {"", "friction", "modulus"})
         self.assertTrue(all("overlap" in cause for cause in simulations.causes_of_failure.values()))
@@ -99,7 +100,7 @@ class Origin(unittest.TestCase):
         self.small = Small(self)
 
     def origin(self, model=None, grains=None):
-        return Simulations(self.small.plan(packings=[(model or self.small.model, grains or packing())]), self.small.folder, "").origin
+        return Simulations(self.small.plan(packings=[Packing(model or self.small.model, [grains or packing()])]), self.small.folder, "").origin
 
     def changed(self, model=None, grains=None):
         before, after = self.origin(), self.origin(model, grains)
@@ -131,7 +132,7 @@ class OtherProtocols(unittest.TestCase):
     def simulations(self, **changes):
         """1 s down; a fast plate shakes the packing."""
         model = self.small.model.with_keys({"effects.relaxation_time": 0.2, "plate.speed": 0.01, **changes})
-        simulations = Simulations(self.small.plan(packings=[(model, packing())], candidates=list(EFFECTS)), self.small.folder, "")
+        simulations = Simulations(self.small.plan(packings=[Packing(model, [packing()])], candidates=list(EFFECTS)), self.small.folder, "")
         return simulations, simulations.other_protocols(True)
 
     def observed(self, simulations, protocol, fit=()):
@@ -173,7 +174,7 @@ class OtherProtocols(unittest.TestCase):
 
     def test_are_not_made_of_a_programme(self):
         programme = scene()._with_programme({"programme.1.stage": "move", "programme.1.position": "0.05"})
-        simulations = Simulations(self.small.plan(packings=[(Model(programme, {}, Instrument(), 0.02), packing())]), self.small.folder, "")
+        simulations = Simulations(self.small.plan(packings=[Packing(Model(programme, {}, Instrument(), 0.02), [packing()])]), self.small.folder, "")
         self.assertEqual(simulations.other_protocols(True), [])
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from mcdem import _engine as engine
 from mcdem.diagnosis.model import Model
-from mcdem.diagnosis.plan import Plan
+from mcdem.diagnosis.plan import Packing, Plan
 from mcdem.diagnosis.trials import Comparison, ObservationStore, Observer, Trial
 from mcdem.experiment.experiment import Experiment, Measurement
 from mcdem.experiment.instrument import Instrument
@@ -79,7 +79,7 @@ class Small:
 
     def plan(self, **more):
         """Of an experiment of which only the measurement counts."""
-        facts = dict(experiments=[Experiment("x", None, measurement=MEASUREMENT)], packings=[(self.model, packing())], comparison=self.comparison,
+        facts = dict(experiments=[Experiment("x", None, measurement=MEASUREMENT)], packings=[Packing(self.model, [packing()])], comparison=self.comparison,
                      candidates=[], hindered=[], nuisances=[], replicates=3, pairs=2, seed=1)
         return Plan(**facts | more)
 

@@ -3,6 +3,8 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from .. import _engine as engine
 from ..errors import InputError
 from ..experiment.experiment import Experiment
@@ -109,7 +111,8 @@ class _Diagnosing:
             self._confirm(inference)
         if self._verdict(inference) == Verdict.not_converged:
             self.refinements.append(self._refinement_of(inference, MAX_REFINEMENT))
-        evidence.finer_baseline = mean_over_packings(self.simulations.finer_baseline(self._stage("half the noise")), self.packings)
+        if not self.facts["drawn"]:
+            evidence.finer_baseline = mean_over_packings(self.simulations.finer_baseline(self._stage("half the noise")), self.packings)
         self.listener.evidence(evidence)
         self.listener.findings(inference.builder.findings)
         return self._diagnosis(inference)
@@ -173,7 +176,8 @@ class _Diagnosing:
             baseline = library.baseline
         else:
             self.simulations.grid = library.grid
-            baseline = self._simulated_baseline("baseline")
+            # Packings that are drawn are as good for one experiment as for another.
+            baseline = np.tile(library.baseline, (self.packings, 1)) if self.facts["drawn"] else self._simulated_baseline("baseline")
         evidence = Evidence(observed=baseline[0], baseline=baseline, library=library,
                             candidates=[CandidateRange(*row) for row in self.facts["candidates"]],
                             nuisances=[NuisancePrior(*row) for row in self.facts["nuisances"]], seed=self.options.seed,

@@ -253,6 +253,9 @@ def depends_on_speed(name: str) -> bool:
 MODULUS_SIGMA = 0.05
 GAMMA_SIGMA = 0.05
 STRAIN_ZERO_SIGMA = 0.01  # over the mean diameter
+# .. of a packing whose grains were not measured: its height and packing fraction are known to one or two per cent. A packing that is looser by
+# a part of its height carries nearly the same force where the plate is lower by that part.
+HEIGHT_SIGMA = 0.1
 
 
 @dataclass(frozen=True)
@@ -265,13 +268,14 @@ class Nuisance:
     apply: Apply
 
 
-def nuisances(model: Model, uncertainty: Mapping[str, float]) -> list[Nuisance]:
-    """The model's. Sigmas are taken from the experiment's [uncertainty] if given there."""
+def nuisances(model: Model, uncertainty: Mapping[str, float], has_grains: bool = True) -> list[Nuisance]:
+    """The model's. Sigmas are taken from the experiment's [uncertainty] if given there. `has_grains`: their positions were measured."""
     modulus = uncertainty.get("grains.youngs_modulus", 0.0) / model["grains.youngs_modulus"]
+    zero = uncertainty.get("plate.start", 0.0) or (STRAIN_ZERO_SIGMA if has_grains else HEIGHT_SIGMA) * model.mean_diameter
     found = [
         Nuisance("modulus", "relative", modulus if modulus > 0 else MODULUS_SIGMA,
                  lambda m, shift: m.with_keys({"grains.youngs_modulus": m["grains.youngs_modulus"] * math.exp(shift)})),
-        Nuisance("strain_offset", "m", STRAIN_ZERO_SIGMA * model.mean_diameter, _read("strain_offset"))]
+        Nuisance("strain_offset", "m", zero, _read("strain_offset"))]
     if model["contact.model"] == "mc_dem":
         found.append(Nuisance("gamma", "", GAMMA_SIGMA, _plus("contact.gamma")))
     for name, key in (("friction", "grains.friction"), ("wall_friction", "walls.friction")):

@@ -1,6 +1,7 @@
-"""What a diagnosis simulates and compares: the packings of an experiment, or other packings of the same kind."""
+"""What a diagnosis simulates and compares: the packings of an experiment, or others of the same kind if their grains were not measured."""
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -22,6 +23,9 @@ BEGUN = 0.02  # over the stroke: a scan before it is not one of its levels, even
 APART = 0x6C696272617279  # seeds of other packings are not those of any experiment, but for an improbable coincidence
 SEEDS_OF_A_PACKING = 1000  # apart from those of the next one
 SEEDS = 2**64  # seeds beyond begin again
+# Where nothing is stated because nothing was measured: what a tomograph and forces from it would have, for the power of measuring them.
+ASSUMED_POSITION_ERROR = 0.005  # over the mean diameter
+ASSUMED_FORCE_ERROR = 0.05
 
 Note = Callable[[str], object]
 
@@ -35,10 +39,20 @@ class Probe:
     apply: Apply
 
 
+@dataclass(frozen=True, eq=False)
+class Packing:
+    """One that was measured, and from which simulations start."""
+
+    model: Model
+    # Its grains; if they were not measured, those of another packing of the same kind for each replicate: the scatter of packings is then
+    # that of the replicates.
+    starts: Sequence[engine.Packing]
+
+
 @dataclass(eq=False)
 class Plan:
     experiments: list[Experiment]  # with the cycles that are compared
-    packings: list[tuple[Model, engine.Packing]]
+    packings: list[Packing]
     comparison: Comparison
     candidates: list[Effect]
     hindered: list[str]  # "friction_history: the scene has no friction"
@@ -47,10 +61,11 @@ class Plan:
     pairs: int  # .. that are repeated with every effect and nuisance
     seed: int
     recordings: bool = False  # whether a library keeps those of its first trials, for the metrics of the paper
+    drawn: bool = False  # whether the packings are others of the same kind, because the grains were not measured
 
     @property
     def model(self) -> Model:
-        return self.packings[0][0]
+        return self.packings[0].model
 
     def probes(self) -> list[Probe]:
         """The candidates, then the nuisances on both sides of the model, so that their slope there is accurate. Amplitudes use the scale of
@@ -71,12 +86,12 @@ class Plan:
         `change`: of the model, with amplitude 1. `finer`: factor of the errors of positions.
         """
         trials, measurement = [], self.experiments[0].measurement
-        for p, (model, packing) in enumerate(self.packings):
-            changed = change(model, 1.0) if change else model
+        for p, packing in enumerate(self.packings):
+            changed = change(packing.model, 1.0) if change else packing.model
             if finer != 1:
                 stated = changed.instrument.stated
                 changed = changed.read_with(stated=replace(stated, position_error=finer * stated.position_error))
-            trials += [Trial(changed, packing, finer * measurement.position_error, measurement.diameter_error,
+            trials += [Trial(changed, packing.starts[r % len(packing.starts)], finer * measurement.position_error, measurement.diameter_error,
                              (self.seed + SEEDS_OF_A_PACKING * p + r) % SEEDS)
                        for r in range(self.replicates if replicates is None else replicates)]
         return trials
@@ -86,7 +101,7 @@ class Plan:
         trials = self.baseline()
         for probe in self.probes():
             for amplitude in probe.amplitudes:
-                changed = {id(model): probe.apply(model, amplitude) for model, _ in self.packings}
+                changed = {id(packing.model): probe.apply(packing.model, amplitude) for packing in self.packings}
                 trials += [replace(trials[row], model=changed[id(trials[row].model)]) for row in self.paired_rows()]
         return trials
 
@@ -110,7 +125,12 @@ def plan_of(scene: engine.Scene, measured: Sequence[Experiment], candidates: Seq
     _note_cycles(measured[0], experiments[0], note)
     grid = min((grid_of(one.recording) for one in experiments), key=lambda one: one.stroke)
     _expect_alike(experiments, grid)
-    packings = [(_model_of(scene, one), _start_of(one)) for one in experiments]
+    if has_grains(experiments[0]):
+        packings = [Packing(_model_of(scene, one), [_start_of(one)]) for one in experiments]
+    else:
+        note(f"{measured[0].name}: grains.csv has no positions of frame 0: packings are drawn as the scene generates them, and their scatter is "
+             "the noise")
+        packings = [_drawn(scene, one, replicates, seed, p) for p, one in enumerate(experiments)]
     return _filled(experiments, packings, grid, candidates, replicates, pairs, seed, recordings)
 
 
@@ -119,10 +139,12 @@ def plan_of_others(scene: engine.Scene, measured: Experiment, packings: int, can
     """Simulations of `packings` others of the same kind, for a library that several experiments share."""
     engine.expect_plain_strokes(scene, "a challenge")
     experiment = _compared_cycles(scene, measured)
+    if not has_grains(experiment):
+        drawn = _drawn(scene, experiment, packings * replicates, seed, 0)
+        return _filled([experiment], [drawn], grid_of(experiment.recording), candidates, packings * replicates, packings * pairs, seed, False)
     plate = {key: scene._values[key] for key in ("plate.start", "plate.end")}
     model = _model_of(scene, experiment).with_keys(plate)
-    seeds = [engine.derived_seed((seed + APART) % SEEDS, p) for p in range(packings)]
-    made = [(model, packing) for packing in engine.make_packings(model.scene, seeds)]
+    made = [Packing(model, [start]) for start in engine.make_packings(model.scene, _seeds(seed, packings))]
     # The grid has the plate positions of the scene, from which the experiment's zero of strain differs.
     grid = grid_of(experiment.recording)
     factor = (plate["plate.start"] - plate["plate.end"]) / grid.stroke
@@ -130,13 +152,19 @@ def plan_of_others(scene: engine.Scene, measured: Experiment, packings: int, can
     return _filled([experiment], made, grid, candidates, replicates, pairs, seed, False)
 
 
-def _filled(experiments: list[Experiment], packings: list[tuple[Model, engine.Packing]], grid: Grid, candidates: Sequence[str], replicates: int,
+def _seeds(seed: int, packings: int, first: int = 0) -> list[int]:
+    """Of packings that are drawn, from number `first` on."""
+    return [engine.derived_seed((seed + APART) % SEEDS, first + p) for p in range(packings)]
+
+
+def _filled(experiments: list[Experiment], packings: list[Packing], grid: Grid, candidates: Sequence[str], replicates: int,
             pairs: int, seed: int, recordings: bool) -> Plan:
-    model = packings[0][0]
+    model = packings[0].model
     chosen, hindered = _choice(model, candidates)
     comparison = Comparison(grid, model.material(), model["protocol.discard"])
-    return Plan(experiments, packings, comparison, chosen, hindered, nuisances(model, experiments[0].uncertainty), replicates,
-                min(pairs, replicates), seed, recordings)
+    drawn = not has_grains(experiments[0])
+    uncertain = nuisances(model, experiments[0].uncertainty, not drawn)
+    return Plan(experiments, packings, comparison, chosen, hindered, uncertain, replicates, min(pairs, replicates), seed, recordings, drawn)
 
 
 def _choice(model: Model, wanted: Sequence[str]) -> tuple[list[Effect], list[str]]:
@@ -182,6 +210,8 @@ def _expect_alike(experiments: Sequence[Experiment], grid: Grid) -> None:
     """Raises InputError unless the packings of one experiment are compressed and measured in the same way."""
     first, problems = experiments[0], []
     for other in experiments:
+        if has_grains(other) != has_grains(first):
+            problems.append(f"{other.name}: must have the positions of frame 0, or not, as {first.name}, to be diagnosed with it")
         if (other.measurement, other.uncertainty) != (first.measurement, first.uncertainty):
             problems.append(f"{other.name}: experiment.toml must state the same [measurement] and [uncertainty] as that of {first.name}, to be "
                             "diagnosed with it")
@@ -194,12 +224,28 @@ def _expect_alike(experiments: Sequence[Experiment], grid: Grid) -> None:
         raise InputError(problems)
 
 
+def has_grains(experiment: Experiment) -> bool:
+    """Whether simulations can start from its own packing, as frame 0 of grains.csv has it."""
+    return len(experiment.recording.scans) > 0 and len(experiment.recording.scans.position[0]) > 0
+
+
 def _start_of(experiment: Experiment) -> engine.Packing:
     """The grains at the experiment's first frame."""
-    scans = experiment.recording.scans
-    if not len(scans) or not len(scans.position[0]):
-        raise InputError(f"{experiment.name}: grains.csv must have the positions of frame 0, from which simulations start")
-    return engine.Packing(scans.position[0], experiment.recording.diameter)
+    return engine.Packing(experiment.recording.scans.position[0], experiment.recording.diameter)
+
+
+def _drawn(scene: engine.Scene, experiment: Experiment, replicates: int, seed: int, number: int) -> Packing:
+    """Packings as the scene generates them, for an experiment (with this number) whose grains were not measured. Raises InputError."""
+    if scene._values["packing.file"]:
+        raise InputError(f"{scene.name}: packing.file must be left out for {experiment.name}, whose grains were not measured: packings are "
+                         "generated (packing.count, packing.packing_fraction); or give the experiment the positions of the file (grains.csv)")
+    model = _model_of(scene, experiment)
+    starts = engine.make_packings(model.scene, _seeds(seed, replicates, SEEDS_OF_A_PACKING * number))
+    mean_diameter = float(np.mean(np.concatenate([start.diameter for start in starts])))
+    stated = experiment.measurement
+    assumed = replace(stated, position_error=stated.position_error or ASSUMED_POSITION_ERROR * mean_diameter,
+                      force_error=stated.force_error or ASSUMED_FORCE_ERROR)
+    return Packing(replace(model, mean_diameter=mean_diameter, instrument=Instrument(assumed)), starts)
 
 
 def _model_of(scene: engine.Scene, experiment: Experiment) -> Model:
@@ -224,4 +270,5 @@ def _model_of(scene: engine.Scene, experiment: Experiment) -> Model:
         changes |= {"plate.end": lowest, "protocol.scans_per_stroke": loading, "protocol.cycles": min(cycles, _simulated_cycles(scene))}
     box = recording.box
     base = scene._variant(changes)._with_programme(recording.parameters)._with_box(box.shape, box.size_x, box.size_y)
-    return Model(base, {}, Instrument(experiment.measurement), float(recording.diameter.mean()), experiment.plate_speed)
+    mean_diameter = float(recording.diameter.mean()) if len(recording.diameter) else math.nan
+    return Model(base, {}, Instrument(experiment.measurement), mean_diameter, experiment.plate_speed)

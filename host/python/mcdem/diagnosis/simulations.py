@@ -77,7 +77,7 @@ class Simulations:
         return {"names": [one.name for one in plan.experiments], "packings": len(plan.packings), "replicates": plan.replicates,
                 "candidates": candidates, "hindered": plan.hindered, "nuisances": [(one.name, one.unit, one.sigma) for one in plan.nuisances],
                 "probes": [(one.name, *one.amplitudes) for one in plan.probes()], "paired_rows": plan.paired_rows(),
-                "has_programme": model.has_programme, "other_materials": other_materials(plan.experiments[0].materials, model.base.parameters[0])}
+                "has_programme": model.has_programme, "drawn": plan.drawn, "other_materials": other_materials(plan.experiments[0].materials, model.base.parameters[0])}
 
     @property
     def device(self) -> str:
@@ -110,7 +110,7 @@ class Simulations:
         model, stated = self.plan.model, self.plan.model.instrument.stated
         origin = model.texts | {f"measurement.{name}": shortest(value) for name, value in vars(stated).items()}
         return origin | {
-            "mean diameter": shortest(model.mean_diameter), "grains": str(len(self.plan.packings[0][1])),
+            "mean diameter": shortest(model.mean_diameter), "grains": str(len(self.plan.packings[0].starts[0])),
             "kernels": engine.kernels_digest(), "observables": hashlib.sha256("".join(f"{one.name};" for one in observables()).encode()).hexdigest(),
             "program": engine.__version__.partition(" ")[0]}  # only the version; a commit need not change results
 
@@ -239,7 +239,7 @@ class Simulations:
         return found.settings(self.plan.model)
 
     def _change(self, change: Callable[[Model], Model]) -> None:
-        self.plan.packings = [(change(model), packing) for model, packing in self.plan.packings]
+        self.plan.packings = [replace(packing, model=change(packing.model)) for packing in self.plan.packings]
 
 
 def _with_recordings(trials: list[Trial]) -> list[Trial]:

@@ -46,8 +46,8 @@ def _frames(recording: Recording) -> Findings:
 def _positions(recording: Recording) -> Findings:
     without = sum(not len(position) for position in recording.scans.position)
     if not len(recording.diameter):
-        yield missing(GRAINS, "diameters and positions: a diagnosis must start from the positions of frame 0, and other simulations start "
-                              "from a generated packing. Without them no overlap can be assigned to a force, which is needed to "
+        yield missing(GRAINS, "diameters and positions: a diagnosis then compares the curve with packings that the scene generates, whose "
+                              "scatter hides small effects. Without positions no overlap can be assigned to a force, which is needed to "
                               "distinguish stiffness, cross-contact effects and adhesion")
     elif without:
         yield missing(GRAINS, f"positions in {without} of {len(recording.scans)} frames: overlaps and displacements of grains are compared "

@@ -6,9 +6,10 @@ from typing import Any
 from ..number_text import shortest
 from ..results.recording import Recording
 
-# The scene keys that `materials` and `uncertainty` may contain.
+# The scene keys that `materials` may contain, and those of `uncertainty`.
 MATERIALS = ("grains.youngs_modulus", "grains.poisson_ratio", "grains.excess_density", "grains.friction", "grains.restitution",
              "walls.youngs_modulus", "walls.friction")
+UNCERTAIN = *MATERIALS, "plate.start"
 
 
 def other_materials(stated: Mapping[str, float], parameters: Mapping[str, Any]) -> list[str]:
@@ -37,7 +38,7 @@ class Experiment:
     name: str
     recording: Recording  # Z, <f> and <b> are computed from the contacts above the force threshold
     materials: dict[str, float] = field(default_factory=dict)  # measured values of MATERIALS
-    uncertainty: dict[str, float] = field(default_factory=dict)  # one sigma of some of MATERIALS
+    uncertainty: dict[str, float] = field(default_factory=dict)  # one sigma of some of UNCERTAIN
     measurement: Measurement = field(default_factory=Measurement)
     plate_speed: float | None = None  # [m/s]; None: slow
     plate_pause: float = 0.0  # the plate stands for this time at each scan [s]; 0: it does not stop

@@ -12,7 +12,7 @@ from ..program import say
 from ..results.engine_run import run_of
 from ..results.parameters import value_of
 from ..results.recording import NO_CONTACTS, NO_VECTORS, Recording, Run
-from .experiment import MATERIALS, Experiment, Measurement
+from .experiment import MATERIALS, UNCERTAIN, Experiment, Measurement
 from .instrument import Instrument, measured
 from .plate import scan_places
 from .publish import expect_free, publish, read_back, work_folder
@@ -94,7 +94,7 @@ def read_uncertainty(words: Sequence[str]) -> dict[str, float]:
     for word in words:
         key, _, number = word.partition("=")
         sigma = to_number(number)
-        if key not in MATERIALS or sigma is None or sigma < 0:
+        if key not in UNCERTAIN or sigma is None or sigma < 0:
             problems.append(f"--uncertainty: must be KEY=SIGMA with a key such as {MATERIALS[0]}, got {word}")
         else:
             found[key] = sigma

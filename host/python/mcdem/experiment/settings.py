@@ -20,7 +20,7 @@ from ..results.recording import Box, Recording
 from ..results.run_file import no_scans
 from ..toml import value_text
 from ..toml_lines import Document, TomlError, Where
-from .experiment import MATERIALS, Experiment, Measurement
+from .experiment import MATERIALS, UNCERTAIN, Experiment, Measurement
 
 LONGEST_KEY = 1000  # in --set
 LARGEST_BOX = 20  # [m]; a larger one was given in millimetres
@@ -156,6 +156,7 @@ class _Reader:
         for key in MATERIALS:  # in alphabetical order
             if (value := self.number(key)) is not None:
                 materials[key] = value
+        for key in UNCERTAIN:
             for sigma in self.sigmas(key):
                 uncertainty[key] = sigma
         names = "position_error", "diameter_error", "force_error", "force_threshold"
@@ -277,6 +278,8 @@ def _tables(experiment: Experiment) -> dict[str, dict[str, str]]:
     """The keys of each table with their values as text."""
     materials = {group: _of_group(experiment.materials, group) for group in ("grains", "walls")}
     sigmas = {f"uncertainty.{group}": _of_group(experiment.uncertainty, group) for group in ("grains", "walls")}
+    if zero := _of_group(experiment.uncertainty, "plate"):
+        sigmas["uncertainty.plate"] = zero
     plate = {"start": experiment.recording.plate_start, "pause": experiment.plate_pause, "hold": experiment.plate_hold}
     plate = {key: value for key, value in plate.items() if key == "start" or value > 0}
     if experiment.plate_speed is not None:
