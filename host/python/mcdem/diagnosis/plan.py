@@ -241,7 +241,7 @@ def _drawn(scene: engine.Scene, experiment: Experiment, replicates: int, seed: i
                          "generated (packing.count, packing.packing_fraction); or give the experiment the positions of the file (grains.csv)")
     model = _model_of(scene, experiment)
     starts = engine.make_packings(model.scene, _seeds(seed, replicates, SEEDS_OF_A_PACKING * number))
-    mean_diameter = float(np.mean(np.concatenate([start.diameter for start in starts])))
+    mean_diameter = float(engine.make_packings(model.scene, [APART])[0].diameter.mean())  # the same for every seed and number of replicates
     stated = experiment.measurement
     assumed = replace(stated, position_error=stated.position_error or ASSUMED_POSITION_ERROR * mean_diameter,
                       force_error=stated.force_error or ASSUMED_FORCE_ERROR)
