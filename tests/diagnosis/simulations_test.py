@@ -113,6 +113,19 @@ class Origin(unittest.TestCase):
         self.assertEqual(self.changed(self.small.model.with_keys({"grains.friction": 0.9})), {"grains.friction"})
         self.assertEqual(self.changed(self.small.model.with_keys({"packing.seed": 7})), set())
 
+    def test_of_packings_that_are_drawn_has_how_they_are(self):
+        """A library of measured packings does not fit an experiment without grains, nor one of packings that are drawn otherwise."""
+        def origin(**settings):
+            packings = [Packing(Model(scene(**settings), {}, Instrument(MEASUREMENT), 0.0215), [packing()])]
+            return Simulations(self.small.plan(packings=packings, drawn=True), self.small.folder, "").origin
+
+        drawn = origin()
+        self.assertEqual(drawn["drawn packing.packing_fraction"], "0.52")
+        self.assertEqual({name.partition(".")[0] for name in set(drawn) - set(self.origin())}, {"drawn packing"})
+        self.assertEqual(origin(packing__seed=7), drawn)
+        other = origin(packing__packing_fraction=0.5)
+        self.assertEqual({name for name in drawn if drawn[name] != other[name]}, {"drawn packing.packing_fraction"})
+
     def test_has_instrument_grains_precision_version_and_kernels(self):
         for name, value in vars(MEASUREMENT).items():
             stated = replace(MEASUREMENT, **{name: 2 * value})

@@ -83,8 +83,9 @@ class DiagnosisBuilder:
         self.decision: Decision = decide(self.findings, limits)
 
     def _p_of_gap(self) -> float:
+        """Packings that are drawn rearrange in all ways, so no place is left out with them."""
         p = p_of_gap(self._null, self._statistics)
-        if p >= self._limits.false_alarm:
+        if p >= self._limits.false_alarm or self._evidence.library.is_drawn:
             return p
         self._places = places_left_out(self.data, self._evidence.seed)
         return max(p, p_without_one_place(self._places))

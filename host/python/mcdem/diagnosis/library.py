@@ -18,6 +18,7 @@ from ..results.recording import Floats
 from .signature import Signature
 
 FORMAT = 4
+DRAWN = "drawn "  # begins the names of what only packings that are drawn depend on
 OTHER_OBSERVABLES = "it has other observables than this program"
 
 
@@ -30,6 +31,11 @@ class Library:
     nuisances: list[Signature] = field(default_factory=list)
     provenance: dict[str, str] = field(default_factory=dict)  # scene, program, device
     origin: dict[str, str] = field(default_factory=dict)  # everything that it depends on, by name (library_origin.py)
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether every replicate is another packing, drawn for an experiment whose grains were not measured."""
+        return any(name.startswith(DRAWN) for name in self.origin)
 
 
 def mean_groups(library: Library) -> list[int]:

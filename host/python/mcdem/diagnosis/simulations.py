@@ -22,6 +22,7 @@ from ..results.names import Phase
 from ..results.recording import Floats, Recording
 from .change_of_the_scene import Amplitudes
 from .effects import EFFECTS, find_effect
+from .library import DRAWN
 from .model import Model
 from .plan import Plan, plan_of, plan_of_others
 from .plate_motion import Change, neglected_motion
@@ -109,6 +110,8 @@ class Simulations:
         """What a library depends on, by name (library_origin.py)."""
         model, stated = self.plan.model, self.plan.model.instrument.stated
         origin = model.texts | {f"measurement.{name}": shortest(value) for name, value in vars(stated).items()}
+        if self.plan.drawn:
+            origin |= {DRAWN + key: text for key, text in model.scene._texts.items() if key.startswith("packing.") and key != "packing.seed"}
         return origin | {
             "mean diameter": shortest(model.mean_diameter), "grains": str(len(self.plan.packings[0].starts[0])),
             "kernels": engine.kernels_digest(), "observables": hashlib.sha256("".join(f"{one.name};" for one in observables()).encode()).hexdigest(),
