@@ -17,7 +17,6 @@ from mcdem.experiment.experiment import Measurement
 from mcdem.experiment.from_run import experiment_from
 from mcdem.experiment.read import read_experiment
 from mcdem.experiment.write import write_experiment
-from mcdem.results.recording import NO_CONTACTS, NO_VECTORS
 
 SMALL = """name = "small"
 [box]
@@ -89,22 +88,20 @@ class Diagnoses(unittest.TestCase):
 
     def curve(self, name, factor):
         """An experiment with only the force on its plate, times a factor."""
-        whole = read_experiment(self.folder / "plain")
-        scans = whole.recording.scans
-        none = replace(scans, position=(NO_VECTORS,) * len(scans), contacts=(NO_CONTACTS,) * len(scans),
-                       wall_force=factor * scans.wall_force)
-        recording = replace(whole.recording, scans=none, diameter=np.zeros(0))
-        write_experiment(self.folder / name, replace(whole, name=name, recording=recording, measurement=Measurement()), gzip=False)
+        whole = read_experiment(self.folder / "plain").recording
+        stronger = replace(whole, scans=replace(whole.scans, wall_force=factor * whole.scans.wall_force))
+        write_experiment(self.folder / name, experiment_from(stronger, MEASUREMENT, plate_only=True), gzip=False)
 
     def test_a_curve_alone_is_compared_with_packings_that_are_drawn(self):
         """The packing of the curve is none of those drawn. Thirty times the force cannot be another packing."""
+        few = replace(FEW, candidates=["cross_contact", "stiffening", "friction"])
         self.curve("curve", 1)
-        plain, listener = self.diagnosed("curve", FEW)
+        plain, listener = self.diagnosed("curve", few)
         self.assertTrue(any("packings are drawn" in note for note in listener.notes), listener.notes)
         self.assertEqual((plain.verdict, len(plain.not_measured)), (Verdict.no_gap, 2))
         self.assertNotIn("half the noise", listener.stages)
         self.curve("stiff", 30)
-        stiff, _ = self.diagnosed("stiff", FEW)
+        stiff, _ = self.diagnosed("stiff", few)
         self.assertNotIn(stiff.verdict, (Verdict.no_gap, Verdict.effect))
         self.assertTrue(any("measure contact forces, with the positions" in step.what for step in stiff.next), stiff.next)
 

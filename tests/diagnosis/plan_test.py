@@ -12,10 +12,10 @@ from mcdem import _engine as engine
 from mcdem.diagnosis.effects import EFFECTS
 from mcdem.diagnosis.plan import plan_of, plan_of_others
 from mcdem.errors import InputError
-from mcdem.experiment.experiment import Experiment, Measurement, other_materials
+from mcdem.experiment.experiment import Experiment, other_materials
+from mcdem.experiment.from_run import experiment_from
 from mcdem.observe.observation import observe
 from mcdem.results.engine_run import run_of
-from mcdem.results.recording import NO_CONTACTS, NO_VECTORS
 
 CYCLES = {cycles: scene(protocol__scan_at_start=True, protocol__cycles=cycles, protocol__stop_at_scans=True) for cycles in (1, 2)}
 
@@ -99,9 +99,7 @@ def quiet(_):
 
 def of_plate(one, **uncertainty):
     """Only its curve."""
-    scans = one.recording.scans
-    bare = replace(scans, position=(NO_VECTORS,) * len(scans), contacts=(NO_CONTACTS,) * len(scans))
-    return replace(one, recording=replace(one.recording, scans=bare, diameter=np.zeros(0)), measurement=Measurement(), uncertainty=uncertainty)
+    return replace(experiment_from(one.recording, MEASUREMENT, plate_only=True), name=one.name, uncertainty=uncertainty)
 
 
 class WithoutGrains(unittest.TestCase):

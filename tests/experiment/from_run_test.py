@@ -48,6 +48,12 @@ class FromRun(unittest.TestCase):
         self.assertEqual((len(bare.diameter), *map(len, bare.scans.position), *map(len, bare.scans.contacts)), (0,) * 5)
         self.assertEqual((len(whole.diameter), *map(len, whole.scans.position), *map(len, whole.scans.contacts)), (1, 1, 1, 0, 1))
 
+    def test_the_plate_alone_states_no_errors_of_grains(self):
+        whole = seen_by_an_instrument([[1, 1, 1]])
+        curve = experiment_from(whole, Measurement(1e-4, 2e-5, 0.05, 0.1), plate_only=True)
+        self.assertEqual((curve.measurement, len(curve.recording.diameter), list(curve.recording.scans.top_force)),
+                         (Measurement(), 0, list(whole.scans.top_force)))
+
     def test_refuses_cells(self):
         self.assertEqual(self.problems_of(experiment_from, seen_by_an_instrument(shape=ContainerShape.cell), Measurement()),
                          ["run, replica: container.shape must be one with a plate, got cell: an experiment is a compression by a plate"])

@@ -31,6 +31,7 @@ class Options:
     uncertainty: Sequence[str]  # "grains.youngs_modulus=500" [unit of the key]
     seed: int  # of the noise
     gzip: bool
+    plate_only: bool = False  # without grains and contacts
 
     @property
     def measurement(self) -> Measurement:
@@ -50,7 +51,7 @@ def write_from_run(options: Options) -> str:
         raise InputError(f"{options.run}: holds a text that is not UTF-8 ({error.reason})") from error
     expect_measurable(truth, options)
     seen = measured(truth, options.instrument, options.seed)
-    stated = experiment_from(seen, options.measurement)
+    stated = experiment_from(seen, options.measurement, options.plate_only)
     experiment = replace(stated, uncertainty=uncertainty, name=options.name or stated.name)
     _write(experiment, options)
     contacts, listed = (sum(map(len, one.scans.contacts)) for one in (truth, experiment.recording))
@@ -58,10 +59,11 @@ def write_from_run(options: Options) -> str:
             "seen")
 
 
-def experiment_from(seen: Recording, measurement: Measurement) -> Experiment:
+def experiment_from(seen: Recording, measurement: Measurement, plate_only: bool = False) -> Experiment:
     """A recording as an instrument reads it, as an experiment with its label. Materials are taken from its parameters.
 
-    Without positions in frame 0 only the plate remains, because grains and contacts have no identity. Raises InputError for a cell.
+    `plate_only`, or without positions in frame 0, only the plate remains: grains and contacts then have no identity. Raises InputError for a
+    cell.
     """
     if seen.box.is_cell:
         raise InputError(f"{seen.label}: container.shape must be one with a plate, got {seen.box.shape}: an experiment is a compression "
@@ -69,10 +71,10 @@ def experiment_from(seen: Recording, measurement: Measurement) -> Experiment:
     stated = {key: to_number(value_of(seen.parameters, key)) for key in MATERIALS}
     materials = {key: value for key, value in stated.items() if value is not None}
     scans = seen.scans
-    if not (len(scans) and len(scans.position[0])):
+    if plate_only or not (len(scans) and len(scans.position[0])):
         scans = replace(scans, position=(NO_VECTORS,) * len(scans), contacts=(NO_CONTACTS,) * len(scans))
         seen = replace(seen, diameter=np.zeros(0), scans=scans)
-    return Experiment(seen.label, seen, materials, measurement=measurement)
+    return Experiment(seen.label, seen, materials, measurement=Measurement() if plate_only else measurement)
 
 
 def chosen_replica(labels: Sequence[str], options: Options) -> int:
