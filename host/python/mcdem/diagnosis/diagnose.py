@@ -15,7 +15,8 @@ from .change_of_the_scene import Amplitudes, change_of_the_scene, simulate_motio
 from .decision import Findings, Limits
 from .diagnosis_types import Diagnosis, GapReduction, NextStep, Refinement, Verdict
 from .effects import depends_on_speed
-from .evidence import CandidateRange, Evidence, NuisancePrior, PackingEvidence, leave_out_failures, mean_over_packings, take_means
+from .evidence import (CandidateRange, Evidence, NuisancePrior, PackingEvidence, column_means, leave_out_failures, mean_over_packings,
+                       take_means)
 from .gap_reduction import PartialFit
 from .inference import Inference, Runs
 from .library import Library, write_library
@@ -94,11 +95,12 @@ class _Diagnosing:
         self.packings: int = self.facts["packings"]
         self.hindered: list[str] = list(self.facts["hindered"])
         self.refinements: list[Refinement] = []
+        self.evidence: Evidence | None = None
         self.has_metrics = options.paper_metrics and not self.facts["has_programme"]  # they compare levels of strokes
 
     def run(self) -> Diagnosis:
         self._tell_what_is_left_out()
-        evidence = self._gather()
+        self.evidence = evidence = self._gather()
         inference = self._infer(evidence)
         has_gap = self._verdict(inference) != Verdict.no_gap
         if self.options.refine > 1 and has_gap and (motion := self.simulations.neglected_motion(MAX_SLOWDOWN)):
@@ -135,7 +137,15 @@ class _Diagnosing:
         """(confirmations, cells) for each fit: means over the packings."""
         rows = self.simulations.fitted(fits, self.options.confirmations, protocol, self._stage(stage))
         each = self.options.confirmations * self.packings
-        return [mean_over_packings(rows[k * each:(k + 1) * each], self.packings) for k in range(len(fits))]
+        runs = [mean_over_packings(rows[k * each:(k + 1) * each], self.packings) for k in range(len(fits))]
+        return [one + self._luck_of_packings() for one in runs] if self.facts["drawn"] and protocol is None else runs
+
+    def _luck_of_packings(self) -> Floats:
+        """(cells,) Mean of the baseline minus that of the packings that confirm, for packings that are drawn: what the few do not share with all
+        is known from the baseline (a control variate)."""
+        assert self.evidence
+        baseline = self.evidence.baseline
+        return column_means(baseline) - column_means(baseline[:self.options.confirmations])
 
     def _amplitudes(self, inference: Inference, proposal: int, fit: PartialFit) -> Amplitudes:
         """Of the effects of a proposal, and of all nuisances."""
