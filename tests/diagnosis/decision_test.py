@@ -174,6 +174,16 @@ class Verdicts(unittest.TestCase):
                 self.assertIn(group, (d.group, None))
                 self.assertEqual(decide(findings, LIMITS), d)  # a function of the findings
 
+    def test_of_a_curve_alone_only_groups_are_named(self):
+        limits = replace(LIMITS, names_alone=False)
+        one = decide(clear_case(), limits)
+        self.assertEqual((one.verdict, one.group), (Verdict.unknown_effect, [1]))
+        self.assertEqual(sum(one.confidence), limits.right_refused)
+        self.assertEqual(explanation_of(clear_case(), one, limits).needed, 1 + limits.over_placebo)  # no reduction suffices
+        several = clear_case(gain=[49.5, 50, 2, 0, 20])
+        self.assertEqual(decide(several, limits), decide(several, LIMITS))
+        self.assertEqual(decide(several, limits).verdict, Verdict.group)
+
     def test_group_contains_effects_within_the_margin_of_the_gain(self):
         d = decide(clear_case(gain=[47.5, 50, 48.5, 46.9, 20]), GROUP_OF_3)
         self.assertEqual((d.verdict, d.group), (Verdict.group, [1, 2, 0]))

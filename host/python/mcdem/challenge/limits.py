@@ -74,14 +74,14 @@ def merits_with(cases: Sequence[LimitCase], limits: Limits) -> Merits:
     return merits_of(ScoredCase(case.truth, answer_of(case.findings, limits), case.over_limit) for case in cases)
 
 
-def choose_limits(cases: Sequence[LimitCase]) -> Limits:
-    """The limits with the largest objective: one limit after the other is varied over a few values until none changes. Among equally
+def choose_limits(cases: Sequence[LimitCase], names_alone: bool = True) -> Limits:
+    """`names_alone`: as in Limits. The limits with the largest objective: one limit after the other is varied over a few values until none changes. Among equally
     good limits, those nearest to the defaults."""
     @cache
     def reached(limits: Limits) -> float:
         return objective(merits_with(cases, limits))
 
-    best = Limits()
+    best = Limits(names_alone=names_alone)
     for _ in range(MAX_ROUNDS):
         before = best
         for name, values in CHOICES.items():

@@ -93,7 +93,7 @@ def _half_of(cases: Sequence[Case], first: bool) -> list[Case]:
 def _score_with_limits(truth: Challenge, results: ChallengeResults, name: str, meaning: str, findings: Sequence[Findings]) -> ArmScore:
     cases = [LimitCase(case, found, over_limit(case, result)) for case, found, result in zip(truth.cases, findings, results.cases)]
     first, second = _half_of(cases, True), _half_of(cases, False)
-    limits = choose_limits(first)
+    limits = choose_limits(first, not results.library.is_drawn)
     return ArmScore(name, meaning, limits, merits_with(first, limits), merits_with(second, limits))
 
 

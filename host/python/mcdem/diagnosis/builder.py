@@ -66,7 +66,7 @@ class DiagnosisBuilder:
     """
 
     def __init__(self, evidence: Evidence, limits: Limits) -> None:
-        self._evidence, self._limits = evidence, limits
+        self._evidence, self._limits = evidence, replace(limits, names_alone=not evidence.library.is_drawn)
         self.data = data = _checked_data(evidence)
         self._space = data.space()
         self._null = NullDistribution(data, evidence.seed)
@@ -80,7 +80,7 @@ class DiagnosisBuilder:
                                  numerics=[c for c in range(data.effects) if is_numerical(names[c])])
         self._tried = [_Tried(self._first_fit(proposal)) for proposal in self.findings.proposals]
         self._measure_reductions()
-        self.decision: Decision = decide(self.findings, limits)
+        self.decision: Decision = decide(self.findings, self._limits)
 
     def _p_of_gap(self) -> float:
         """Packings that are drawn rearrange in all ways, so no place is left out with them."""

@@ -34,6 +34,8 @@ class Limits:
     certain_above: float = 0.2  # this much more than required; linear in between
     right_form: float = 0.4  # instead of `right_above` if p is smaller than `another_form`
     right_refused: float = 0.5  # largest probability of an effect that is not named
+    # Whether one effect may be named alone. Of a curve alone only a group is: nothing else that was measured confirms which it is.
+    names_alone: bool = True
     reduction_margin: float = 0.1  # error of the reduction by signatures, on either side of its interval
 
     def enough(self, pair: bool) -> float:
@@ -231,7 +233,8 @@ def _name_effect(decision: Decision, findings: Findings, limits: Limits) -> None
     elif _remainder_exceeds_limit(chosen, limits):
         decision.verdict = Verdict.unknown_effect
     else:
-        decision.verdict = Verdict.group if not chosen.is_pair() and len(decision.group) > 1 else Verdict.effect
+        is_group = not chosen.is_pair() and len(decision.group) > 1
+        decision.verdict = Verdict.group if is_group else Verdict.effect if limits.names_alone else Verdict.unknown_effect
 
 
 def _chosen(findings: Findings, single: int, group: list[int], limits: Limits) -> Decision:
@@ -265,6 +268,8 @@ def decide(findings: Findings, limits: Limits) -> Decision:
     decision = _chosen(findings, single, _group_of(leader.candidates[0], gains, best, margin), limits)
     decided = chosen_proposal(findings, decision)
     right = _trust(decided, findings, limits)
+    if decision.verdict == Verdict.unknown_effect and not limits.names_alone:
+        right = min(right, limits.right_refused)
     if decided.is_pair():  # gains of single effects are not compared
         decision.confidence = [right if c in decided.candidates else 0.0 for c in range(len(findings.gain))]
     else:
@@ -289,5 +294,7 @@ def explanation_of(findings: Findings, decision: Decision, limits: Limits) -> Ex
     needed = _needed_reduction(decided, findings, limits)
     if decision.verdict not in (Verdict.not_converged, Verdict.calibration_suspect):
         needed = max(needed, 1 - _allowed_remainder(decided, limits))
+    if decision.verdict == Verdict.unknown_effect and not limits.names_alone:
+        needed = max(needed, 1 + limits.over_placebo)  # no reduction suffices
     return Explanation(decided.best_reduction(), decided.confirmed_reduction is not None, findings.held_out, findings.placebo, needed,
                        decided.best_misfit(), leaves_more_than_noise=decided.best_misfit() < limits.misfit, without="")

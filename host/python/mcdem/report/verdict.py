@@ -30,7 +30,7 @@ def added_causes(diagnosis: Diagnosis) -> list[Cause]:
 
 
 def nothing_can_be_named(diagnosis: Diagnosis) -> bool:
-    """Whether the data are so few that no reduction would suffice: random effects take away nearly all of the gap."""
+    """Whether the data are so few that no reduction would suffice: random effects take away nearly all of the gap, or only a curve is known."""
     return diagnosis.explanation is not None and diagnosis.explanation.needed > 1
 
 
@@ -142,6 +142,8 @@ def _needed_words(diagnosis: Diagnosis) -> str:
         return ""
     if explanation.placebo > 0.5:
         return f", but random effects (placebo) take away up to {percent(explanation.placebo)}"
+    if nothing_can_be_named(diagnosis):
+        return ", as other effects may do that these data cannot tell from it"
     needed = percent(explanation.needed)
     return ", a little less than is needed to name it" if needed == percent(explanation.reduction) else \
         f", and {needed} would be needed to name it"
