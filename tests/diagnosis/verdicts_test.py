@@ -39,7 +39,8 @@ class Case(unittest.TestCase):
         self.said(["experiment", "from-run", str(self.folder / f"run-{folder}"), "--out", str(self.folder / folder)])
 
     def words(self, options, experiments, out):
-        return ["diagnose", str(self.folder / "scene.toml"), "--out", str(self.folder / out), *options.split(),
+        return ["diagnose", str(self.folder / "scene.toml"), "--out", str(self.folder / out), "--no-figures",
+                *options.split(),
                 *(word for name in experiments for word in ("--experiment", str(self.folder / name)))]
 
     def diagnosis(self, options, *experiments, out="d"):
