@@ -144,7 +144,8 @@ class Holds(Case):
 
     def verdict_on(self, name, change=None):
         self.experiment(change, name, 7)
-        return self.diagnosis(SMALL + f"viscoelasticity,plasticity,friction --library {self.folder / 'l.json'}", name)
+        return self.diagnosis("--replicates 10 --pairs 2 --confirmations 4 --candidates "
+                              f"viscoelasticity,plasticity,friction --library {self.folder / 'l.json'}", name)
 
     def test_relaxation_is_distinguished_from_plasticity(self):
         self.take(SOURCES / "scenes/relaxation.toml")
