@@ -11,7 +11,7 @@ from mcdem.commands.command_line import run_command
 from mcdem.errors import InputError
 
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
-SMALL = "--replicates 16 --pairs 4 --confirmations 4 --candidates "
+SMALL = "--replicates 10 --pairs 2 --confirmations 4 --candidates "
 FEW = SMALL + "friction,wall_friction,rolling_resistance,plate_speed"
 BOX = "[box]\nsize_x = 0.083\nsize_y = 0.083\n"
 CONTAINERS = ('[container]\nshape = "cylinder"\nradius = 0.047\n', '[container]\nshape = "periodic"\nsize_x = 0.08\nsize_y = 0.085\n')
@@ -144,8 +144,7 @@ class Holds(Case):
 
     def verdict_on(self, name, change=None):
         self.experiment(change, name, 7)
-        return self.diagnosis("--replicates 10 --pairs 2 --confirmations 4 --candidates "
-                              f"viscoelasticity,plasticity,friction --library {self.folder / 'l.json'}", name)
+        return self.diagnosis(SMALL + f"viscoelasticity,plasticity,friction --library {self.folder / 'l.json'}", name)
 
     def test_relaxation_is_distinguished_from_plasticity(self):
         self.take(SOURCES / "scenes/relaxation.toml")
