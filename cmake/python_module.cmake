@@ -36,3 +36,5 @@ file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/host/pyth
 foreach(file ${files})
   configure_file(host/python/${file} ${CMAKE_BINARY_DIR}/python/${file} COPYONLY)
 endforeach()
+# Compiled once: commands run without writing bytecode (python3 -B), and would compile the package each time.
+execute_process(COMMAND ${Python3_EXECUTABLE} -m compileall -q --invalidation-mode checked-hash ${CMAKE_BINARY_DIR}/python/mcdem)

@@ -87,7 +87,7 @@ TEST_F(ChallengeFolderTest, NothingIsWrittenOutsideTheFolderOrBeforeItIsComplete
 TEST_F(ChallengeFolderTest, ALibraryIsWrittenOnce) {
     const std::string words =
         "diagnose tiny.toml --experiment challenge/case_0001 --library l --replicates 8 --pairs 2"
-        " --confirmations 0 --candidates friction --out ";
+        " --confirmations 0 --candidates friction --no-figures --out ";
     Child first(folder_.path, split(words + "first"), held_after(100));
     wait_until_held(first);
     expect_done(words + "second");

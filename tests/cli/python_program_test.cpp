@@ -101,6 +101,16 @@ TEST_F(PythonProgramTest, MissingPartsAreNamed) {
                 testing::ThrowsMessage<RunError>(HasSubstr("nowhere")));
 }
 
+TEST_F(PythonProgramTest, OpenBlasHasOneThreadUnlessTheUserSetsAnother) {
+    const char* const print = "import os\nprint(os.environ['OPENBLAS_NUM_THREADS'])\n";
+    set("OPENBLAS_NUM_THREADS", "3");
+    EXPECT_EQ(run(print), 0);
+    EXPECT_EQ(out_, "3\n");
+    ::unsetenv("OPENBLAS_NUM_THREADS");
+    EXPECT_EQ(run(print), 0);
+    EXPECT_EQ(out_, "1\n");
+}
+
 TEST_F(PythonProgramTest, AModuleInTheCurrentFolderIsNotUsed) {
     const fs::path here = fs::current_path();
     fs::current_path(folder_.path);

@@ -67,7 +67,7 @@ class FalseAlarms(unittest.TestCase):
 
     def test_p_is_uniform_with_the_fewest_replicates(self):
         # The number of cells of a complete experiment.
-        p = p_of_experiments(1, 8, 0, known=20, seeds=range(700, 1100))
+        p = p_of_experiments(1, 8, 0, known=20, seeds=range(700, 950))
         for level in (0.01, 0.05, 0.2, 0.5):
             error = math.sqrt(level * (1 - level) / len(p))
             np.testing.assert_allclose((p < level).mean(axis=0), level, atol=3.5 * error)

@@ -11,7 +11,7 @@ from mcdem.commands.command_line import run_command
 from mcdem.errors import InputError
 
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
-SMALL = "--replicates 16 --pairs 4 --confirmations 4 --candidates "
+SMALL = "--replicates 10 --pairs 2 --confirmations 4 --candidates "
 FEW = SMALL + "friction,wall_friction,rolling_resistance,plate_speed"
 BOX = "[box]\nsize_x = 0.083\nsize_y = 0.083\n"
 CONTAINERS = ('[container]\nshape = "cylinder"\nradius = 0.047\n', '[container]\nshape = "periodic"\nsize_x = 0.08\nsize_y = 0.085\n')
@@ -39,7 +39,7 @@ class Case(unittest.TestCase):
         self.said(["experiment", "from-run", str(self.folder / f"run-{folder}"), "--out", str(self.folder / folder)])
 
     def words(self, options, experiments, out):
-        return ["diagnose", str(self.folder / "scene.toml"), "--out", str(self.folder / out), *options.split(),
+        return ["diagnose", str(self.folder / "scene.toml"), "--out", str(self.folder / out), "--no-figures", *options.split(),
                 *(word for name in experiments for word in ("--experiment", str(self.folder / name)))]
 
     def diagnosis(self, options, *experiments, out="d"):
@@ -111,6 +111,7 @@ class Verdicts(Case):
         told = self.diagnosis(FEW)
         self.expect(told, "no_gap")
         self.assertIn("contacts.csv", json.dumps(told["not_measured"]))
+        self.assertEqual([file.name for file in (self.folder / "d").iterdir() if file.suffix in (".png", ".pdf", ".svg")], [])
         self.assertEqual({cell["observable"] for cell in told["cells"]}, {"top_force"})
 
     def test_a_candidate_whose_runs_fail_affects_only_itself(self):

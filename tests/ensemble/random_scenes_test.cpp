@@ -23,6 +23,7 @@ int setting(const char* variable, int otherwise) {
     const char* text = std::getenv(variable);
     return text ? std::atoi(text) : otherwise;
 }
+int number_of_scenes() { return setting("MCDEM_RANDOM_SCENES", 12); }
 
 /// All output of a replica as one text.
 std::string told_of(const Recording& recording) {
@@ -124,7 +125,7 @@ std::string hashes_on_threads(int threads, const std::filesystem::path& folder) 
 
 TEST(RandomScenes, AreTheSameAloneInABatchAndInParts) {
     Device device;
-    const int first = setting("MCDEM_RANDOM_SEED", 1), count = setting("MCDEM_RANDOM_SCENES", 24);
+    const int first = setting("MCDEM_RANDOM_SEED", 1), count = number_of_scenes();
     const char* const hashes_wanted = std::getenv("MCDEM_RANDOM_HASHES");
     std::string hashes;
     for (int seed = first; seed < first + count && !HasFailure(); ++seed) {
@@ -137,7 +138,7 @@ TEST(RandomScenes, AreTheSameAloneInABatchAndInParts) {
 TEST(RandomScenes, AreTheSameOnAnyNumberOfThreads) {
     const TestFolder folder;
     const std::string one = hashes_on_threads(1, folder.path);
-    EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), setting("MCDEM_RANDOM_SCENES", 24));
+    EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), number_of_scenes());
     EXPECT_EQ(hashes_on_threads(5, folder.path), one);
 }
 

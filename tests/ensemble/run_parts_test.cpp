@@ -122,8 +122,9 @@ protected:
 count = 90
 packing_fraction = 0.5
 [protocol]
-settle_time = 0.005
-relax_time = 0.005
+rate_tolerance = 0.1
+settle_time = 0.002
+relax_time = 0.002
 [[species]]
 name = "soft"
 [[species]]
@@ -145,7 +146,7 @@ radius = 0.045
 [plate]
 start = 0.16
 end = 0.11
-speed = 0.5
+speed = 1
 [[programme]]
 position = 0.14
 scans = 2
@@ -166,22 +167,19 @@ size_x = 0.095
 size_y = 0.095
 [[programme]]
 strain = 0.02
-rate = 2
+rate = 5
 scans = 2
 [[programme]]
 shear_xz = 0.05
-rate = 2
+rate = 5
 [[programme]]
 stage = "hold"
 time = 0.004
 )";
 
 TEST_P(ProgrammePartsTest, InPartsAndInterruptedGiveTheBytesOfASingleProcess) {
-    for (const std::size_t size : {1, 3}) {
-        const auto name = "parts of " + std::to_string(size);
-        finish(name, size);
-        expect_like_whole(name);
-    }
+    finish("parts", 3);
+    expect_like_whole("parts");
     interrupt("interrupted", 0, 2);
     ASSERT_TRUE(fs::exists(work_folder("interrupted") / "checkpoint.h5"));
     finish("interrupted");

@@ -28,14 +28,14 @@ def operations(place, words, kinds, code=0):
     return [line.split(" ", 2)[1:] for line in log.read_text().splitlines()]
 
 
-def check_looks(place, words, outputs=()):
-    """Every failing look ends the command with the reason, or changes nothing of what it prints."""
+def check_looks(place, words, outputs=(), step=1):
+    """Every failing look (with `step` 2 every second one) ends the command with the reason, or changes nothing of what it prints."""
     plain = mcdem(place, *words)
     for output in outputs:
         shutil.rmtree(place / output)
     looks = operations(place, words, "stat")
     assert looks, words
-    for number, (_, path) in enumerate(looks, 1):
+    for number, (_, path) in list(enumerate(looks, 1))[::step]:
         fault, reason = list(REASONS.items())[number % len(REASONS)]
         for output in outputs:
             shutil.rmtree(place / output, ignore_errors=True)
@@ -73,12 +73,12 @@ def experiments_are_looked_for(place):
 def outputs_are_looked_for(place):
     whole_run(place)
     check_looks(place, [*FROM_RUN[:-1], "new"], ["new"])
-    check_looks(place, ["report", "out", "--out", "page.html"])
-    check_looks(place, ["export", "out", "--xyz", "--out", "xyz"], ["xyz"])
+    check_looks(place, ["report", "out", "--out", "page.html"], step=2)
+    check_looks(place, ["export", "out", "--xyz", "--out", "xyz"], ["xyz"], step=2)
 
 
 def tables_are_looked_for_by_python(place):
-    check_looks(place, importing(place), ["imp"])
+    check_looks(place, importing(place), ["imp"], step=2)
 
 
 def names_in(folder):

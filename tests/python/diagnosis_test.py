@@ -50,7 +50,7 @@ class Diagnoses(unittest.TestCase):
         self.assertIn("library", {stage for stage, _ in told})
         (self.folder / "scene.toml").write_text(stiffer.text)
         self.program("diagnose", "scene.toml", "--experiment", "measured", "--out", "out", "--candidates",
-                     "adhesion,friction", "--replicates", "8", "--pairs", "2", "--confirmations", "2", "--refine", "1")
+                     "adhesion,friction", "--replicates", "8", "--pairs", "2", "--confirmations", "2", "--refine", "1", "--no-figures")
         other = json.loads((self.folder / "out/diagnosis.json").read_text())
         for varying in ("seconds", "provenance"):
             del said[varying], other[varying]

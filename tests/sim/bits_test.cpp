@@ -18,12 +18,10 @@ Start squeezed_lattice(int kind) {
     Replica replica = test_replica(all_models[(kind + 4) % 6]);
     replica.contact.friction_law = kind % 2 ? FrictionLaw::saturated : FrictionLaw::mindlin;
     replica.numerics.time_step = kind % 3 ? 0.1 : 0.08;
-    replica.plate.speed = 0.2;
-    auto& protocol = replica.protocol;
-    protocol.scans_per_stroke = 2;
-    protocol.relax_time = protocol.settle_time = 0.03;
+    replica.protocol.scans_per_stroke = 2;
     const int counts[] = {27, 1, 65, 16, 7, 33, 64, 40};
     Start start = jittered_lattice(replica, counts[kind], 40 + kind);
+    shorten(start);
     if (kind == with_species) {
         start.replica.species = {{"a", {23.3e3, 0.45, 1000, 300, 0.3, 0.7}},
                                  {"b", {8e4, 0.3, 2000, 900, 0.6, 0.9}}};

@@ -20,17 +20,16 @@ Start programmed_lattice(int kind) {
     Replica replica = test_replica(all_models[(kind + 4) % 6]);
     replica.contact.friction_law = FrictionLaw::mindlin;
     replica.effects.viscoelasticity = kind == 1 ? 0.3 : 0;
-    auto& protocol = replica.protocol;
-    protocol.relax_time = protocol.settle_time = 0.03;
     const int counts[] = {27, 8, 18};
     const double forces[] = {1.5, 1, 1.2};
     Start start = jittered_lattice(replica, counts[kind], 40 + kind);
+    shorten(start);
     auto& programme = start.replica.programme;
     programme.resize(4);
-    programme[0] = force_of(forces[kind], 0.2);
+    programme[0] = force_of(forces[kind], start.replica.plate.speed);
     programme[1].kind = mcdem::StageKind::hold;
     programme[1].keep = mcdem::Controlled::force;
-    programme[1].time = 0.02;
+    programme[1].time = 0.005;
     programme[2].kind = mcdem::StageKind::cycle;
     programme[2].position = 0.95 * start.replica.plate.start;
     programme[2].back = 0.97 * start.replica.plate.start;
@@ -56,18 +55,18 @@ Start programmed_cell(int kind) {
     Replica replica = test_replica(all_models[(kind + 4) % 6]);
     replica.contact.friction_law = FrictionLaw::mindlin;
     replica.effects.viscoelasticity = kind == 1 ? 0.3 : 0;
-    replica.protocol.relax_time = replica.protocol.settle_time = 0.03;
     Start start = cell_lattice(replica, 3 + kind % 2, 40 + kind);
+    shorten(start);
     auto& programme = start.replica.programme;
     programme.resize(4);
     programme[0].strain = 0.01;
     programme[1].shear_xy = 0.1 + 0.02 * kind;
     programme[1].strain_z = 0.02;
     programme[2].kind = mcdem::StageKind::hold;
-    programme[2].time = 0.02;
+    programme[2].time = 0.005;
     programme[3].kind = mcdem::StageKind::repeat;
     if (kind >= 3) set_stresses(programme);
-    for (auto& stage : programme) stage.rate = 2;
+    for (auto& stage : programme) stage.rate = 5;
     return start;
 }
 
@@ -104,10 +103,9 @@ mcdem::Effects effects_of(int kind) {
 /// Kind 0 is without effects.
 Start with_effects(int kind) {
     Replica replica = test_replica(ContactModel::mc_dem);
-    replica.plate.speed = 0.2;
     replica.protocol.scans_per_stroke = 2;
-    replica.protocol.relax_time = replica.protocol.settle_time = 0.03;
     Start start = jittered_lattice(replica, kind % 2 ? 27 : 17, 70 + kind);
+    shorten(start);
     for (auto& diameter : start.packing.diameter) diameter *= 0.97;
     start.replica.effects = effects_of(kind);
     return start;
@@ -120,9 +118,8 @@ Start contained(int kind) {
     Start start = kind == 0   ? rings_in_a_cylinder(replica, 2, 1)
                   : kind == 1 ? jittered_lattice(replica, 27, 2)
                               : periodic_lattice(replica, 3, 2, 3);
-    start.replica.plate.speed = 0.2;
+    shorten(start);
     start.replica.protocol.scans_per_stroke = 2;
-    start.replica.protocol.relax_time = start.replica.protocol.settle_time = 0.03;
     return start;
 }
 

@@ -12,6 +12,16 @@ inline std::vector<Vec3> forces_of(const mcdem::ReplicaState& state) {
     return forces;
 }
 
+/// A short run: bits differ after few steps if they ever do.
+inline void shorten(Start& start) {
+    auto& plate = start.replica.plate;
+    auto& protocol = start.replica.protocol;
+    plate.speed = 1;
+    plate.end = start.replica.box.shape == mcdem::ContainerShape::cell ? 0 : 0.95 * plate.start;
+    protocol.rate_tolerance = 0.05;
+    protocol.relax_time = protocol.settle_time = 0.003;
+}
+
 /// All output of one replica.
 struct Told {
     std::vector<double> numbers;
@@ -112,7 +122,7 @@ inline void expect_same_after_restarts(const std::vector<Start>& starts, int sca
     WholeRun whole(Precision::single_precision, starts);
     int rounds = 0;
     while (whole.advance()) ++rounds;
-    for (const int stop : {0, 1, rounds / 7, rounds / 4, rounds / 2, 3 * rounds / 4}) {
+    for (const int stop : {0, 1, rounds / 7, rounds / 2, 3 * rounds / 4}) {
         SCOPED_TRACE(stop);
         WholeRun first(Precision::single_precision, starts), second(Precision::single_precision, starts);
         first.advance(stop);

@@ -57,5 +57,7 @@ def set_search_path(package):
 
 if __name__ == "__main__":
     set_search_path(os.path.dirname(os.path.dirname(__file__)))
+    # The matrices are small: threads of OpenBLAS would only wait for one another, on a busy machine many times longer than they compute.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from mcdem.program import main
     sys.exit(main())

@@ -61,6 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--library", metavar="FILE", type=output_path,
                         help="File with the simulated changes by each effect, for use with further experiments; read if it exists, "
                              "otherwise computed and written")
+    parser.add_argument("--no-figures", action="store_true", help="Do not draw figures")
     add_sharing_options(parser)
 
 
@@ -92,10 +93,11 @@ def _run_alone(options: argparse.Namespace, scene: "Scene") -> int:
             make_folder_of(options.library)
         for name, kind in (("diagnosis.json", DIAGNOSIS), ("diagnosis.html", PAGE)):
             expect_replaceable(folder / name, kind)
-        expect_replaceable_figures(folder, ("where", "which", "how_far"))
+        if not options.no_figures:
+            expect_replaceable_figures(folder, ("where", "which", "how_far"))
         diagnosis = _diagnose(options, scene, experiments)
         replace_own(folder / "diagnosis.json", DIAGNOSIS, diagnosis_json(diagnosis).encode())
-        present(options.out)
+        present(options.out, figures=not options.no_figures)
     return 0
 
 
