@@ -14,7 +14,7 @@ from .boxes import check_boxes
 from .contacts import ContactFrames, import_contacts
 from .grains import GrainFrames, import_grains
 from .mapping import WALLS, Known
-from .plate import PlateRows, check_heights, import_plate
+from .plate import PlateRows, check_heights, import_plate, needs_start
 from .rows import ImportTable, Rows, of_role
 
 # For the two sides of a contact: largest difference over the larger force; weak forces over the largest one of the frame.
@@ -43,8 +43,8 @@ class _Assembly:
         if len(plates) != 1:
             self.problems.add("plate", f"must be one table with the plate's position and force by frame, got {len(plates)}: say "
                               '`role = "plate"` in the mapping, or give the table')
-        elif "displacement" in plates[0].map and np.isnan(start):
-            self.problems.add(plates[0].map.files[0], "displacements count downwards from plate.start, which must be given [m]: --set "
+        elif needs_start(plates[0].map) and np.isnan(start):
+            self.problems.add(plates[0].map.files[0], f"{plates[0].map.place} counts downwards from plate.start, which must be given [m]: --set "
                               "plate.start=..")
         else:
             self.plate = import_plate(plates[0], start, self.problems, self.known.programme)

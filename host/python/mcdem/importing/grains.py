@@ -80,7 +80,7 @@ def _read_table(table: ImportTable, frames: GrainFrames, problems: Problems) -> 
         rows.problem_once("size", i, f"{size_key} must be > 0, got {shortest(size[i])}")
     whole = wanted & np.isfinite(centres).all(axis=1) & np.isfinite(size) & np.isfinite(ids)
     centres = unit * centres - frames.origin
-    diameter = unit * (2 * size if size_key == "radius" else np.cbrt(6 * size / np.pi) if size_key == "volume" else size)
+    diameter = unit * (mapped.number("size_factor") or 1) * (2 * size if size_key == "radius" else np.cbrt(6 * size / np.pi) if size_key == "volume" else size)
     starts = rows.frames()
     for begin, end in zip(starts, starts[1:]):
         mine = begin + np.flatnonzero(whole[begin:end])

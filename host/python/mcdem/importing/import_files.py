@@ -32,7 +32,7 @@ def import_files(files: Sequence[str], known: Known, kept: str, given: str, sett
     """
     tables, text = _tables_of(files, known, kept, given)
     mapping = mapping_of(tables)
-    if files:
+    if files or known.stated:
         text = mapping_text(mapping)
     _print_mapping(mapping)
     if not given:
@@ -47,7 +47,7 @@ def _tables_of(files: Sequence[str], known: Known, kept: str, given: str) -> tup
     """The tables, and the text of the given mapping."""
     if given:
         text = text_of_mapping(given)
-        return read_import_tables(parse_mapping(text, given), files, given), text
+        return read_import_tables(parse_mapping(text, given, known.stated), files, given), text
     if not files:
         raise InputError("TABLE: must be at least one file, or --mapping must name them, got neither")
     if is_there(kept):
