@@ -31,6 +31,7 @@ Examples:
   mcdem experiment import data/second/* --mapping out/lab/mapping.toml --metadata data/known.toml --out out/second"""
 
 MAPPING = "mapping.toml"
+PICTURE = "record.png"  # of a testing machine's record
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -60,8 +61,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from ..experiment.publish import expect_free, work_folder
+    from ..outputs import FIGURE, expect_replaceable
     from ..problems import Problems
     expect_free(options.out)
+    expect_replaceable(os.path.join(options.out, PICTURE), FIGURE)
     problems = Problems()
     settings = _settings(options, problems)
     with work_folder(options.out) as folder:
@@ -109,9 +112,18 @@ def _import(options: argparse.Namespace, settings: "Experiment", problems: "Prob
         if not options.mapping:
             _refuse(options, attempt, error.problems, True)
         raise
+    _write_picture(options, attempt)
     for note in attempt.imported.notes:
         say(note)
     return experiment
+
+
+def _write_picture(options: argparse.Namespace, attempt: "Attempt") -> None:
+    from ..outputs import FIGURE, replace_own
+    if attempt.picture:
+        file = os.path.join(options.out, PICTURE)
+        replace_own(file, FIGURE, attempt.picture)
+        say(f"{file} shows what was understood of the record")
 
 
 def _write(work: pathlib.Path, mapping: str, imported: "Imported", settings: "Experiment", gzip: bool) -> None:
@@ -124,7 +136,7 @@ def _write(work: pathlib.Path, mapping: str, imported: "Imported", settings: "Ex
     work.mkdir()
     write_tables(imported, work, gzip)
     write_files(work, {MAPPING: mapping.encode(errors="surrogateescape"),
-                       SETTINGS_FILE: settings_text(settings).encode(errors="surrogateescape")})
+                       SETTINGS_FILE: (settings_text(settings) + imported.programme).encode(errors="surrogateescape")})
 
 
 def _refuse(options: argparse.Namespace, attempt: "Attempt", problems: Sequence[str], wrong_rows: bool) -> NoReturn:
@@ -135,6 +147,7 @@ def _refuse(options: argparse.Namespace, attempt: "Attempt", problems: Sequence[
     make_folder(options.out)
     if not create_whole(file, attempt.mapping.encode(errors="surrogateescape")):
         raise InputError(f"{file}: another program has just written it")
+    _write_picture(options, attempt)
     what = (f"repair the tables, remove {file} and import again; or correct the wrong entries of {file} and import with --mapping {file}"
             if wrong_rows else f"correct the entries of {file} that begin with a question mark, remove the marks, and import again with "
             f"--mapping {file}")

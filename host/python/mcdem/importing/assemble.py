@@ -15,6 +15,7 @@ from .contacts import ContactFrames, import_contacts
 from .grains import GrainFrames, import_grains
 from .mapping import WALLS, Known
 from .plate import PlateRows, check_heights, import_plate, needs_start
+from .record import import_course
 from .rows import ImportTable, Rows, of_role
 
 # For the two sides of a contact: largest difference over the larger force; weak forces over the largest one of the frame.
@@ -30,6 +31,7 @@ class Imported:
     contacts: pd.DataFrame | None
     plate_start: float
     notes: list[str] = field(default_factory=list)
+    programme: str = ""  # [[programme]] of experiment.toml
 
 
 class _Assembly:
@@ -46,6 +48,8 @@ class _Assembly:
         elif needs_start(plates[0].map) and np.isnan(start):
             self.problems.add(plates[0].map.files[0], f"{plates[0].map.place} counts downwards from plate.start, which must be given [m]: --set "
                               "plate.start=..")
+        elif plates[0].map.word("course") == "stages":
+            return self.of_record(plates[0], len(grains) + len(contacts))
         else:
             self.plate = import_plate(plates[0], start, self.problems, self.known.programme)
         self.grains = import_grains(grains, self.problems)
@@ -61,6 +65,17 @@ class _Assembly:
             tables.append(self.contacts_of(table, tables))
         self.problems.report()
         return self.result(pd.concat(tables) if tables else None)
+
+    def of_record(self, table: ImportTable, others: int) -> Imported:
+        """Of a testing machine, without grains."""
+        if others or self.known.programme:
+            self.problems.add(table.map.files[0], 'course = "stages" must stand alone, got ' + ("tables of grains" if others else "[[programme]]")
+                              + ' too: write course = "rows" in the mapping')
+            self.problems.report()
+        programme = import_course(table, self.known, self.problems)
+        self.problems.report()
+        assert programme is not None
+        return Imported(programme.plate, None, None, programme.start, self.notes, programme.text)
 
     def place_grains(self, by: str) -> None:
         def wrong(frame: int, topic: str, what: str) -> None:

@@ -7,11 +7,12 @@ from .arrays import Floats
 from .contacts import import_contacts, wall_partner
 from .grains import GrainFrames
 from .guess_contacts import ROUGH, decide_force_unit, hertz_force
-from .guess_names import has_force
+from .guess_names import has_force, note_units
 from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
 from .mapping import UNCLEAR, Known, MappedTable, guess, signed_column
-from .names import PERCENT, PRESSURES, RATIO_KEYS, LENGTHS, column_name
+from .names import PERCENT, PRESSURES, RATIO_KEYS, LENGTHS, column_name, columns_by_key
 from .plate import SOLID_KEYS, PlateRows, import_plate
+from .record import guess_course
 from .rows import ImportTable, of_role
 
 
@@ -95,6 +96,16 @@ def _units_above_floor(rows: PlateRows, start: float) -> list[str]:
     return [unit for unit, factor in sorted(LENGTHS.items(), key=lambda unit: -unit[1]) if 0 < down * factor < start]
 
 
+def _prefer_displacement(table: ImportTable, tables: list[ImportTable], known: Known) -> None:
+    """To a height as the machine counts it, where plate.start tells the height and no grains do."""
+    if table.map.place == "plate_z" and known.plate_start > 0 and not of_role(tables, "grains"):
+        if len(names := columns_by_key("plate", table.parts[0].columns).get("displacement", [])) == 1:
+            table.map.entries.pop("plate_z")
+            table.map["displacement"] = guess(names[0], "sure", "its name, and plate.start tells the height")
+            table.map.entries.pop("length_unit", None)
+            note_units(table.map)
+
+
 def _guess_ratio(mapped: MappedTable, rows: PlateRows) -> None:
     """The unit of a strain, or of what tells the volume of the grains: a part of the volume is not above 1."""
     key = mapped.place
@@ -140,7 +151,10 @@ def _guess_height(mapped: MappedTable, plate: _Plate, start: float, factors: dic
         if goes_down and np.isnan(start):
             unknown = "plate.start is not known: --set plate.start=.. would tell"
         elif goes_down and (units := _units_above_floor(plate.rows, start)):
-            likely, unknown = units[0], f"{unknown}; above the floor the plate stays in {', '.join(units)}"
+            likely, unknown = "mm" if "mm" in units else units[0], f"{unknown}; above the floor the plate stays in {', '.join(units)}"
+        elif not seen and start > 0 and not goes_down and np.isfinite(plate.rows.z).any():
+            highest = float(np.nanmax(plate.rows.z))
+            fits, seen = fitting_units(LENGTHS, highest, start, 0.4, 2.5), f"at the highest the plate is at {highest:.4g}, and plate.start is {start:g} m"
         decide_unit(mapped, "length_unit", fits, seen, (fits[0] if fits else likely, seen or f"no name says it, and {unknown}"))
 
 
@@ -198,6 +212,7 @@ def guess_plate_units(table: ImportTable, tables: list[ImportTable], grains: Gra
     plate = _Plate(table, known.plate_start, grains)
     if not len(plate.rows):
         return
+    _prefer_displacement(table, tables, known)
     factors = length_factors(known.voxel_size)
     unit_of_grains = next((other.map.word("length_unit", "m") for other in of_role(tables, "grains")), "m")
     _guess_downwards(mapped, plate.rows)
@@ -207,3 +222,4 @@ def guess_plate_units(table: ImportTable, tables: list[ImportTable], grains: Gra
     _guess_height(mapped, plate, known.plate_start, factors)
     state_voxel_size(mapped, known)
     _guess_force(table, tables, plate, known)
+    guess_course(table, known, not of_role(tables, "grains") and len(of_role(tables, "plate")) == 1)

@@ -81,6 +81,11 @@ _FRAMES_BY = ("plate: frames have the plate's numbers, times or steps; nearest: 
 KEYS: dict[str, list[Key]] = {
     "plate": [
         Key("frame", "column", "a row's frame number, time or step; without it the rows count"),
+        Key("course", "word", "stages: the record of a testing machine, which is thinned to the moves and holds of a programme; rows: each row is a scan",
+            ("rows", "stages")),
+        Key("scans", "number", "of each move and hold, where course is stages"),
+        Key("contact", "number", "where the plate first touches, as its column counts: plate.start is the height there"),
+        Key("tare", "number", "force before it, as its column counts, which is taken off"),
         Key("cycle", "column", "compression cycle, rising; without it from the plate's turns"),
         Key("phase", "column", "load or unload (down or up, compression or decompression); without it from the plate's direction"),
         Key("plate_z", "quantity", "height of the plate; this or displacement; with a - before its name where it counts downwards"),

@@ -32,7 +32,7 @@ _RATIO_NAMES = {word for _, words in _RATIOS for word in words.split() if len(wo
 _LETTERS_OF_SOILS = {"p", "q", "e", "n"}  # mean and deviator stress, void ratio and porosity, where the table has both p and q
 DOWNWARDS = "depth tiefe profondeur zdown zdownwards"  # names of a downward z
 # Meanings of frame numbers.
-COUNTED = {"time": "time t zeit temps", "step": "step timestep schritt iter", "scan": "frame scan image snapshot bild state"}
+COUNTED = {"time": "time t zeit temps testtime testzeit pruefzeit elapsedtime totaltime runningtime", "step": "step timestep schritt iter", "scan": "frame scan image snapshot bild state"}
 _FRAME = ("frame", " ".join(COUNTED.values()))
 
 

@@ -90,7 +90,7 @@ def needs_start(mapped: MappedTable) -> bool:
 def _heights(rows: Rows, start: float) -> Floats:
     """Of the plate [m]. `start`: the height at no displacement and no strain, and of the first row where the grains' volume is unknown."""
     mapped, key = rows.map, rows.map.place
-    values = rows.number(key)
+    values = rows.number(key) - (mapped.number("contact") * signed_column(mapped.word(key))[0] if key in ("displacement", "strain") else 0)
     if key == "plate_z":
         return np.asarray(mapped.length_factor() * (values - mapped.number("origin_z") * signed_column(mapped.word(key))[0]))
     if key not in RATIO_KEYS:
@@ -119,7 +119,7 @@ def import_plate(table: ImportTable, start: float, problems: Problems, programme
     rows.expect_quantity("length", [key for key in ("plate_z", "displacement") if key == mapped.place])
     keys = rows.key if rows.keyed else np.arange(len(rows), dtype=float)
     force_unit = mapped.force_factor() * (-1 if mapped.word("force_sign") == "-" else 1)
-    force = sum(part * rows.number(key) for key, part in zip(forces, (1, 2 / 3)))
+    force = sum(part * rows.number(key) for key, part in zip(forces, (1, 2 / 3))) - mapped.number("tare")
     plate = PlateRows(_heights(rows, start), force_unit * force, keys, rows)
     for i in 1 + np.flatnonzero(~(np.diff(keys) > 0))[:1]:
         rows.problem_once("order", i, f"frame must rise from row to row, got {shortest(keys[i])} after {shortest(keys[i - 1])}: "
@@ -129,5 +129,6 @@ def import_plate(table: ImportTable, start: float, problems: Problems, programme
     if programme and "set_force" in rows:
         stated = rows.stated("set_force")
         plate.set_force = np.where(stated, force_unit * rows.number("set_force", stated), np.nan)
-    _read_phases(rows, plate, problems)
+    if mapped.word("course") != "stages":
+        _read_phases(rows, plate, problems)
     return plate
