@@ -133,7 +133,7 @@ def _sharpen(course: Course) -> None:
         if leg.kind == "hold":
             first, last = before.first if before else leg.first, after.last if after else leg.last
             at = first + np.flatnonzero(np.abs(course.z[first:last + 1] - np.median(course.z[leg.first:leg.last + 1])) <= TOLERANCE / 2 * course.stroke)
-            if before and after and before.first < at[0] < at[-1] < after.last:
+            if len(at) and before and after and before.first < at[0] < at[-1] < after.last:
                 leg.first, leg.last = int(at[0]), int(at[-1])
                 before.last, after.first = leg.first, leg.last
 

@@ -111,11 +111,12 @@ def _guess_ratio(mapped: MappedTable, rows: PlateRows) -> None:
     key = mapped.place
     assert rows.rows is not None
     name, largest = column_name(signed_column(mapped.word(key))[1]).unknown.lower(), np.nanmax(np.abs(rows.rows.number(key)), initial=0)
-    unit = "%" if name in PERCENT or (not name and largest > 1 and key != "void_ratio") else "1"
+    most = {"strain": 1.0, "void_ratio": np.inf}.get(key, 1.5)  # estimates of a part may be above 1
+    unit = "%" if name in PERCENT or (not name and largest > most) else "1"
     if name in PERCENT | {"-", "1", "mm/mm", "m/m"}:
         mapped["ratio_unit"] = guess(unit, "sure", "the column's name says so")
     else:
-        sure = key != "strain" and (largest > 1.5 or unit == "1" and largest > 0.1)
+        sure = unit == "%" or key != "strain" and 0.1 < largest <= 1 or key == "void_ratio"
         mapped["ratio_unit"] = guess(unit, "sure" if sure else UNCLEAR, f"no name says it, and its values reach {largest:.4g}")
 
 
@@ -183,7 +184,7 @@ def _guess_force(table: ImportTable, others: list[ImportTable], plate: _Plate, k
     mapped, force = table.map, plate.rows.force[np.isfinite(plate.rows.force)]
     low, high = force.min(initial=np.inf), force.max(initial=-np.inf)
     larger, deep = "-" if abs(low) > abs(high) else "+", _sign_at_the_lowest(plate.rows)
-    clear = min(abs(low), abs(high)) < 0.3 * max(abs(low), abs(high)) and deep in ("", larger)
+    clear = (low * high >= 0 or min(abs(low), abs(high)) < 0.3 * max(abs(low), abs(high))) and deep in ("", larger)
     mapped["force_sign"] = guess(deep or larger, "sure" if clear else UNCLEAR, f"forces reach from {low:.4g} to {high:.4g}, and the grains push"
                                  + (f"; at the lowest the sign is {deep}, and the plate may stick on its way back" if not clear and deep else ""))
     ratio, truth = plate.force_ratio(_contact_forces(others, plate.grains)[plate.frames]), "of the contacts with the plate"

@@ -123,7 +123,7 @@ def import_plate(table: ImportTable, start: float, problems: Problems, programme
     plate = PlateRows(_heights(rows, start), force_unit * force, keys, rows)
     for i in 1 + np.flatnonzero(~(np.diff(keys) > 0))[:1]:
         rows.problem_once("order", i, f"frame must rise from row to row, got {shortest(keys[i])} after {shortest(keys[i - 1])}: "
-                          "repair the table, or leave frame out of the mapping where frames_by is order")
+                          "repair the table, give each test as a table of its own, or leave frame out of the mapping where frames_by is order")
     if programme:
         plate.time = rows.number("time") * TIMES.get(column_name(mapped.word("time")).unit, 1)
     if programme and "set_force" in rows:

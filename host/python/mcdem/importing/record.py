@@ -48,7 +48,7 @@ def _course_of(plate: PlateRows, problems: Problems) -> Course | None:
         at, before = plate.time[where[falls[0]]], plate.time[where[falls[0] - 1]]
         rows.problem_once("time", where[falls[0]], f"time must not fall, got {shortest(at)} after {shortest(before)} s: give one test a table, with "
                           "the time since its start")
-    return None if problems.count or known.sum() < 3 else course_of(plate.time[known], plate.z[known], plate.force[known])
+    return None if problems.count or len(falls) or known.sum() < 3 else course_of(plate.time[known], plate.z[known], plate.force[known])
 
 
 def _as_it_counts(mapped: MappedTable, z: float, start: float) -> float:
@@ -66,10 +66,9 @@ def guess_course(table: ImportTable, known: Known, alone: bool) -> None:
                                                               ("course", "stages"))}
     start, problems = float(mapped.place in RATIO_KEYS), Problems()
     plate = import_plate(table.changed(**plain), start, Problems(), True)
-    if len(plate) < MIN_ROWS or (course := _course_of(plate, problems)) is None:
-        return
-    contact = contact_of(course)
-    if contact is None:
+    course = _course_of(plate, problems) if len(plate) >= MIN_ROWS else None
+    contact = contact_of(course) if course else None
+    if course is None or contact is None:
         return
     if mapped.word("frame") == mapped.word("time"):
         mapped.entries.pop("frame", None)
