@@ -23,7 +23,7 @@ MAPPINGS = (
         '4: "x" must be a text, or a list of texts, got something else',
         '5: length_unit must be one of "m" "cm" "mm" "um" "voxel", got "ft"',
         '6: origin_x must be a number in quotes, got "left"',
-        '7: "fx" must be a key of a table of grains, got another: remove it, or choose from frame, frames_by, grain, first_grain, where, x, '
+        '7: "fx" must be a key of a table of grains, got another: remove it, or choose from frame, frames_by, grain, labels, first_grain, where, x, '
         "y, z, diameter, radius, volume, size_factor, same_diameter, length_unit, voxel_size, origin_x, origin_y, origin_z",
         "8: diameter must be one text, got 2"]),
     ('[[table]]\nrole = "contacts"\nfiles = ["a"]\n[table.walls]\n1 = "roof"\n', [

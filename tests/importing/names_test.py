@@ -189,7 +189,7 @@ class Heights(ImportCase):
 
     def test_of_a_strain_without_a_unit_are_asked_for(self):
         self.expect_one(self.unclear(self.guess_with("axial strain", lambda z: 1 - z / self.START)), 'ratio_unit must be confirmed, got "?1"')
-        self.expect_one(self.unclear(self.guess_with("axial strain", lambda z: 100 - 100 * z / self.START)), 'ratio_unit must be confirmed, got "?%"')
+        self.assertEqual(self.of(self.guess_with("axial strain", lambda z: 100 - 100 * z / self.START), "plate")["ratio_unit"].word, "%")  # above 1
 
     def test_are_refused_where_no_grains_or_more_than_all_volume_are_left(self):
         for name, value in (("porosity", 1.0), ("relative density", 0.0), ("void_ratio", -0.1)):

@@ -7,9 +7,16 @@ from .mapping import PLACE_KEYS, SIZE_KEYS, UNCLEAR, Guess, MappedTable, guess, 
 from .names import COUNTED, FORCE_WORDS, FORCES, LENGTH_WORDS, RATIO_KEYS, VOXEL, column_name, columns_by_key, other_quantity
 from .rows import ImportTable
 
+WITHOUT_FORCES = "pairs of grains that touch, without forces"
 LENGTH_KEYS = ("x", "y", "z", *SIZE_KEYS, "plate_z", "displacement")
 FORCE_KEYS = ("fx", "fy", "fz", "force", "top_force", "set_force", "mean_stress", "deviator_stress")
 PROGRAMS = {"SPAM": {"Label", "Zpos", "Ypos", "Xpos"}, "trackpy": {"mass", "signal"}, "scikit-image": {"centroid-2"}}
+
+
+def _may_be_force(column: str) -> bool:
+    name = column_name(column)
+    known = columns_by_key("contacts", [column]) or name.quantity in ("a length", "a time", "a fraction")
+    return not known and re.search("id$|^no$|label|number|distance|branch|normal|angle|area|radius", name.base) is None
 
 
 def has_force(keys: AbstractSet[str]) -> bool:
@@ -28,7 +35,9 @@ def _role_of(columns: list[str]) -> tuple[str, str, str]:
         return role, "sure", "its columns are named so"
     # Contact lists of SPAM: labels of grains, orientations, numbers of voxels.
     if pairs and {"label1", "lab1", "labeli"} & {*bases} and not any(base.startswith(("f", "kraft")) for base in bases):
-        return "unused", "likely", "pairs of grains that touch, without forces: an experiment's contacts have forces"
+        return "contacts", "likely", WITHOUT_FORCES
+    if pairs and not contacts & {"fx", "fy", "fz", "force"} and not any(map(_may_be_force, columns)):
+        return "contacts", "likely", WITHOUT_FORCES
     return "unused", UNCLEAR, "its columns say nothing that is known"
 
 
@@ -99,6 +108,8 @@ def guess_by_names(table: ImportTable) -> None:
         if re.match("f[ts]|.*(tang|shear|scher)", column_name(column).base):
             mapped["force"] = guess(mapped.word("force"), UNCLEAR,
                                     f"{column} would not be used: give fx, fy, fz, or confirm that the normal part is enough")
+    if mapped.role_why == WITHOUT_FORCES:
+        mapped.entries = {key: of for key, of in mapped.entries.items() if key not in "xyz"}
     note_units(mapped)
     if role == "grains":
         _note_programs(mapped, columns)

@@ -111,6 +111,8 @@ KEYS: dict[str, list[Key]] = {
         Key("frame", "column", "which rows belong together: frame number, time or step"),
         Key("frames_by", "word", _FRAMES_BY, ("plate", "nearest", "order", "rows")),
         Key("grain", "column", "a grain's number, alike in all frames; without it the rows of a frame count"),
+        Key("labels", "word", "kept: a grain has one number in all frames; linked: numbers count anew in each, and grains are linked by their places",
+            ("kept", "linked")),
         Key("first_grain", "number", "the number of the first row's grain, where no column has it"),
         Key("where", "column", "rows with 0 here are no grains"),
         Key("x", "quantities", "centre; of several columns the sum, such as position and displacement"),
@@ -164,6 +166,8 @@ class MappedTable:
     role_why: str = ""
     line: int = 0  # in the mapping
     files: list[str] = field(default_factory=list)  # with the same columns, in order of the frames
+    joined: list[str] = field(default_factory=list)  # files with more columns, each of that in `files`, by the label
+    joined_by: str = ""  # their column of labels
     unused: list[str] = field(default_factory=list)  # unused columns
     form: Form | None = None  # of text
     decimal_unclear: str = ""  # reason; empty if it is clear
@@ -197,6 +201,11 @@ class MappedTable:
     def place(self) -> str:
         """The key that tells the plate's height; empty if there is none."""
         return next((key for key in PLACE_KEYS if key in self), "")
+
+    @property
+    def is_topology(self) -> bool:
+        """Whether contacts have no forces."""
+        return self.role == "contacts" and not self.entries.keys() & {"force", "fx", "fy", "fz"}
 
     @property
     def is_pressure(self) -> bool:
@@ -265,6 +274,8 @@ def meaning_of(key: Key) -> str:
 def _table_text(table: MappedTable) -> str:
     text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_certainty, table.role_why), "one of " + ", ".join(KEYS))
     text += f"files = {toml_value(table.files)}\n"
+    if table.joined:
+        text += f"joined = {toml_value(table.joined)}\njoined_by = {toml_value(table.joined_by)}\n"
     if table.form:
         separator = {"\t": "tab", " ": "blanks"}.get(table.form.separator, table.form.separator)
         text += f'separator = "{separator}"\n'

@@ -72,9 +72,9 @@ WORDS = {
     ],
     "contacts": [
         _FRAME,
-        ("grain", "grain id1 i grain1 particle1 particlei p1 a graina idi korn1 teilchen1 atom1 patom1 ida part1 g1 i1 label1 lab1 "
+        ("grain", "grain id1 i grain1 grain1id grainid1 particle1id particle1 particlei p1 a graina idi korn1 teilchen1 atom1 patom1 ida part1 g1 i1 label1 lab1 "
                   "labeli"),
-        ("partner", "partner id2 j grain2 particle2 particlej p2 b grainb idj korn2 teilchen2 atom2 patom2 idb part2 g2 i2 "
+        ("partner", "partner id2 j grain2 grain2id grainid2 particle2id particle2 particlej p2 b grainb idj korn2 teilchen2 atom2 patom2 idb part2 g2 i2 "
                     "neighbour neighbor nachbar other contactwith label2 lab2 labelj"),
         *_of_axes("@", "@ @c c@ p@ contact@ @contact cp@ point@ @pos", ("", "", DOWNWARDS)),
         *_of_axes("f@", "f@ force@ @force kraft@ ff@ fc@", ("f1", "f2", "f3")),

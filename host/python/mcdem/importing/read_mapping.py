@@ -14,6 +14,7 @@ from .names import VOXEL
 from .text import Form
 
 LARGEST = 1_000_000  # bytes
+JOINED, JOINED_BY = Key("joined", "files"), Key("joined_by", "column")
 ROLE, FILES, WALL = Key("role", "word", "", tuple(KEYS)), Key("files", "files"), Key("a wall", "word", "", (*WALLS, BY_DIRECTION))
 POSITIVE = {"voxel_size": " [m]", "area": " [m2]", "solid_volume": " [m3]", "size_factor": ""}
 FORM_KEYS = [Key("separator", "word", "", (",", ";", "tab", "blanks")), Key("decimal", "word", "", (".", ","))]
@@ -83,6 +84,9 @@ class _Reader:
         table.files = stated(FILES)
         if not table.files:
             self.wrong(where, "files must name at least one file, got none")
+        table.joined, table.joined_by = stated(JOINED), "".join(stated(JOINED_BY))
+        if table.joined and (len(table.joined) != len(table.files) or not table.joined_by or "grain" not in node):
+            self.wrong(where, "joined must name a file for each of files, joined_by their column of labels, and grain that of files")
         form = [stated(key) for key in FORM_KEYS]
         if any(form):
             separator, decimal = (words[0] if words else otherwise for words, otherwise in zip(form, ",."))
