@@ -229,7 +229,7 @@ def thinned(course: Course, contact: float, count: int) -> Scans:
 def _alike(a: dict[str, Any], b: dict[str, Any], tolerance: float) -> bool:
     if a.keys() != b.keys() or a.get("scans") != b.get("scans") or a.get("keep") != b.get("keep"):
         return False
-    return abs(a.get("position", 0) - b.get("position", 0)) <= 2 * tolerance and abs(a.get("time", 0) - b.get("time", 0)) <= 0.02 * a.get("time", 0)
+    return bool(abs(a.get("position", 0) - b.get("position", 0)) <= 2 * tolerance and abs(a.get("time", 0) - b.get("time", 0)) <= 0.02 * a.get("time", 0))
 
 
 def _folded(stages: list[dict[str, Any]], tolerance: float) -> list[dict[str, Any]]:

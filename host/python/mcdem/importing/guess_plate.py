@@ -22,7 +22,7 @@ class _Plate:
     def __init__(self, table: ImportTable, start: float, grains: GrainFrames) -> None:
         plain = {key: guess(word, "stated", "") for key, word in (("length_unit", "m"), ("force_unit", "N"), ("force_sign", "+"))}
         start = start if np.isfinite(start) else float(table.map.place in RATIO_KEYS)
-        self.rows = rows = import_plate(table.changed(**plain), start, Problems())
+        self.rows = rows = import_plate(table.changed(**plain), start, Problems(), "time" in table.map)
         self.grains = grains
         row = rows.index.find(grains.keys) if not grains.row else np.array(grains.row, int)
         # Frames refer to the first table of the plate; a second one may be shorter.
@@ -57,6 +57,7 @@ def _guess_downwards(mapped: MappedTable, rows: PlateRows) -> None:
     place, known = mapped.place, np.isfinite(rows.z + rows.force)
     if len(rows) < 3 or place in SOLID_KEYS or mapped[place].certainty == UNCLEAR or not known.any():
         return
+    known[:-1] &= ~(np.diff(rows.time) == 0)  # machines repeat a time before they start
     z, force = rows.z[known], rows.force[known]
     above, below = (np.abs(force[at]).mean() for at in (z >= z.max() - 0.2 * np.ptp(z), z <= z.min() + 0.2 * np.ptp(z)))
     first, by_size = _first_way(z, force), 1 if above > 2 * below else -1 if below > 2 * above else 0
@@ -210,10 +211,10 @@ def guess_plate_units(table: ImportTable, tables: list[ImportTable], grains: Gra
     if not has_force(mapped.entries.keys()) or not mapped.place:
         return
     _guess_area(mapped, known)
+    _prefer_displacement(table, tables, known)
     plate = _Plate(table, known.plate_start, grains)
     if not len(plate.rows):
         return
-    _prefer_displacement(table, tables, known)
     factors = length_factors(known.voxel_size)
     unit_of_grains = next((other.map.word("length_unit", "m") for other in of_role(tables, "grains")), "m")
     _guess_downwards(mapped, plate.rows)

@@ -214,7 +214,7 @@ class MappedTable:
     def force_factor(self) -> float:
         """Of the table's unit in newtons."""
         unit = self.word("force_unit", "N")
-        return PRESSURES[unit] * self.number("area") if unit in PRESSURES else FORCES[unit]
+        return float(PRESSURES[unit] * self.number("area") if unit in PRESSURES else FORCES[unit])
 
     def changed(self, **entries: Guess) -> "MappedTable":
         """A copy with other entries."""

@@ -6,9 +6,9 @@ from typing import NamedTuple
 from scipy import constants
 
 LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
-FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "kN": 1e3, "cN": 1e-2, "daN": 10.0, "gf": 1e-3 * constants.kgf, "kgf": constants.kgf, "lbf": constants.lbf}
+FORCES: dict[str, float] = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "kN": 1e3, "cN": 1e-2, "daN": 10.0, "gf": 1e-3 * constants.kgf, "kgf": constants.kgf, "lbf": constants.lbf}
 TIMES = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
-PRESSURES = {"Pa": 1.0, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "bar": constants.bar, "mbar": 1e-3 * constants.bar, "psi": constants.psi,
+PRESSURES: dict[str, float] = {"Pa": 1.0, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "bar": constants.bar, "mbar": 1e-3 * constants.bar, "psi": constants.psi,
              "ksi": 1e3 * constants.psi, "atm": constants.atm, "torr": constants.torr, "mmHg": constants.mmHg, "N/mm2": 1e6, "N/cm2": 1e4,
              "N/m2": 1.0, "kN/m2": 1e3, "kN/mm2": 1e9, "mN/mm2": 1e3, "kgf/mm2": 1e6 * constants.kgf, "kgf/cm2": 1e4 * constants.kgf, "gf/cm2": 10 * constants.kgf}
 VOXEL = "voxel"  # a length unit with its size in the mapping
