@@ -9,7 +9,7 @@ import unittest
 
 FOLDER = pathlib.Path(os.environ.get("MCDEM_SHARED_DATA", ""), "real")
 if not FOLDER.is_dir():
-    print(f"skipped: the laboratories' data are not here (tests/README.md): {FOLDER}")
+    print(f"the authors' data are not here (tests/README.md): {FOLDER}")
     sys.exit(77)
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "importing"))

@@ -63,7 +63,8 @@ class _Reader:
         for i in np.flatnonzero((sides == REVERSED) & wanted)[:1]:
             wall = names[i]
             self.rows.problem_once(wall, i, f'{wall} must be named in [table.walls] where {wall[0]} is reversed, {wall} = "x_min" or another')
-        for i in () if self.grains.labels else np.flatnonzero((sides == NOBODY) & wanted)[:20]:
+        nobody = np.flatnonzero((sides == NOBODY) & wanted)
+        for i in nobody[:0 if self.grains.labels else 20]:
             self.rows.problem(i, f"{key} must be a grain, or a wall that [table.walls] of the mapping names, got "
                               + quoted(self.rows.text(i, key)))
         return np.asarray(np.maximum(sides, NOBODY))

@@ -227,9 +227,12 @@ def thinned(course: Course, contact: float, count: int) -> Scans:
 
 
 def _alike(a: dict[str, Any], b: dict[str, Any], tolerance: float) -> bool:
+    def near(key: str, most: float) -> bool:
+        return bool(abs(a.get(key, 0) - b.get(key, 0)) <= most)
+
     if a.keys() != b.keys() or a.get("scans") != b.get("scans") or a.get("keep") != b.get("keep"):
         return False
-    return bool(abs(a.get("position", 0) - b.get("position", 0)) <= 2 * tolerance and abs(a.get("time", 0) - b.get("time", 0)) <= 0.02 * a.get("time", 0))
+    return near("position", 2 * tolerance) and near("time", 0.02 * a.get("time", 0))
 
 
 def _folded(stages: list[dict[str, Any]], tolerance: float) -> list[dict[str, Any]]:
