@@ -39,16 +39,16 @@ def import_files(files: Sequence[str], known: Known, kept: str, given: str, sett
     _print_mapping(mapping)
     if not given:
         attempt = _attempt(tables, known, text, [*unclear_entries(text, kept), *settings_problems])
-        return replace(attempt, picture=_picture(tables, known))
+        return replace(attempt, picture=_picture(tables))
     if settings_problems:
         raise InputError(settings_problems)
     _expect_kept(kept, text)
-    return Attempt(text, import_tables(tables, known), picture=_picture(tables, known))
+    return Attempt(text, import_tables(tables, known), picture=_picture(tables))
 
 
-def _picture(tables: list[ImportTable], known: Known) -> bytes | None:
+def _picture(tables: list[ImportTable]) -> bytes | None:
     records = [table for table in of_role(tables, "plate") if table.map.word("course") == "stages"]
-    return picture_of(records[0], known) if len(records) == 1 else None
+    return picture_of(records[0]) if len(records) == 1 else None
 
 
 def _tables_of(files: Sequence[str], known: Known, kept: str, given: str) -> tuple[list[ImportTable], str]:

@@ -16,6 +16,7 @@ from .names import RATIO_KEYS
 from .plate import SOLID_KEYS, PlateRows, import_plate
 from .rows import ImportTable, whole_entry
 
+ABOVE_ALL = 1e6  # height from which displacements count, where it does not matter
 MIN_ROWS = 50  # of a record; with fewer every row is a scan
 SMALL_GAP = 0.01  # of the stroke
 SCANS, MOST_SCANS = 20, 1000  # of each stage
@@ -57,15 +58,19 @@ def _as_it_counts(mapped: MappedTable, z: float, start: float) -> float:
     return sign * z if mapped.place == "plate_z" else sign * (start - z)
 
 
+def _plain(table: ImportTable) -> ImportTable:
+    """A record whose numbers are taken as SI units."""
+    words = {"length_unit": "m", "force_unit": "N", "ratio_unit": "1", "origin_z": "0", "course": "stages"}
+    return table.changed(**{key: guess(word, "stated", "") for key, word in words.items()})
+
+
 def guess_course(table: ImportTable, known: Known, alone: bool) -> None:
     """Of a plate's table with times and many rows that stands `alone`: no frames of grains belong to its rows."""
     mapped = table.map
     if not alone or known.programme or "time" not in mapped or mapped.place in ("", *SOLID_KEYS):
         return
-    plain = {key: guess(word, "stated", "") for key, word in (("length_unit", "m"), ("force_unit", "N"), ("ratio_unit", "1"), ("origin_z", "0"),
-                                                              ("course", "stages"))}
     start, problems = float(mapped.place in RATIO_KEYS), Problems()
-    plate = import_plate(table.changed(**plain), start, Problems(), True)
+    plate = import_plate(_plain(table), start, Problems(), True)
     course = _course_of(plate, problems) if len(plate) >= MIN_ROWS else None
     contact = contact_of(course) if course else None
     if course is None or contact is None:
@@ -130,17 +135,17 @@ def import_course(table: ImportTable, known: Known, problems: Problems) -> Progr
     return Programme(course, scans, table_of, start)
 
 
-def picture_of(table: ImportTable, known: Known) -> bytes | None:
-    """PNG of the record with its moves, holds, contact and scans, in the table's units; None if it cannot be read yet."""
-    programme = import_course(table, Known(plate_start=known.plate_start if known.plate_start > 0 else 1.0), Problems())
+def picture_of(table: ImportTable) -> bytes | None:
+    """PNG of the record with its moves, holds, contact and scans, in the table's units; None if it cannot be read."""
+    start = {"plate_z": np.nan, "strain": 1.0}.get(table.map.place, ABOVE_ALL)
+    programme = import_course(_plain(table), Known(plate_start=start), Problems())
     if programme is None:
         return None
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     mapped, course, scans = table.map, programme.course, programme.scans
     is_strain = mapped.place in RATIO_KEYS
-    unit = programme.start if is_strain else mapped.length_factor()
-    down, force = (programme.start - course.z) / unit, course.force / mapped.force_factor()
+    down, force = programme.start - course.z, course.force
     seen = [np.interp(scans.row, np.arange(len(course.z)), values) for values in (course.time, down, force)]
     names = "time [s]", "strain" if is_strain else f"displacement [{mapped.word('length_unit')}]", f"force [{mapped.word('force_unit')}]"
     figure = Figure(figsize=(11, 3.6), layout="constrained")
