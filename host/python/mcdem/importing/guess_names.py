@@ -36,7 +36,8 @@ def _role_of(columns: list[str]) -> tuple[str, str, str]:
     # Contact lists of SPAM: labels of grains, orientations, numbers of voxels.
     if pairs and {"label1", "lab1", "labeli"} & {*bases} and not any(base.startswith(("f", "kraft")) for base in bases):
         return "contacts", "likely", WITHOUT_FORCES
-    if pairs and not contacts & {"fx", "fy", "fz", "force"} and not any(map(_may_be_force, columns)):
+    named = all(len(column_name(names[0]).base) > 2 for key, names in columns_by_key("contacts", columns).items() if key in ("grain", "partner"))
+    if pairs and named and not contacts & {"fx", "fy", "fz", "force"} and not any(map(_may_be_force, columns)):
         return "contacts", "likely", WITHOUT_FORCES
     return "unused", UNCLEAR, "its columns say nothing that is known"
 
