@@ -233,6 +233,15 @@ class Sticking(ImportCase):
                         self.assertEqual((plate.word("force_sign"), plate["force_sign"].certainty), (named, "unclear"))
                         self.expect_among(self.unclear(tables), "displacement must be confirmed", "a plate that sticks is pulled")
 
+    def test_may_be_pulled_farther_than_it_was_pressed(self):
+        _, tables = self.guess_stroke(0.12, 0.3)
+        self.write("plate.csv", "displacement_mm,force_N\n0,0\n0.5,0.05\n1,0.12\n0,-0.2\n-1,-0.3\n-2,-0.3\n-3,0\n")
+        plate = self.imported(self.by_mapping(self.accepted(tables))).plate
+        np.testing.assert_allclose(plate.plate_z_m, 0.027 - 1e-3 * np.array([0, 0.5, 1, 0, -1, -2, -3]))
+        text = self.accepted(tables, ('displacement = "displacement_mm"', 'displacement = "-displacement_mm"'))
+        self.write("plate.csv", "displacement_mm,force_N\n0,0\n0.5,0.05\n1,0.12\n0.01,0\n")
+        self.expect_among(self.problems_of(lambda: self.imported(self.by_mapping(text))), "the plate must go down from plate.start")
+
     def test_has_one_as_a_height_too(self):
         for way, word in ((-1, "height_mm"), (1, "-height_mm")):
             plate, _ = self.guess_stroke(0.12, 0.3, way, head="height_mm,force_N", start=27)

@@ -36,7 +36,7 @@ PICTURE = "record.png"  # of a testing machine's record
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("TABLE", nargs="*",
-                        help="Tables of the plate, the grains and the contacts: text, dumps of LAMMPS and LIGGGHTS, text and VTK of Yade, "
+                        help="Tables of the plate, the grains and the contacts: text, raw files of testing machines, dumps of LAMMPS and LIGGGHTS, text and VTK of Yade, "
                              "extended xyz, regions of scikit-image, trackpy's and SPAM's tables; any may be packed with gzip")
     parser.add_argument("--out", metavar="DIR", type=output_path, required=True, help="Folder to create")
     parser.add_argument("--mapping", metavar="FILE", default="",

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
 
 from .mapping import PLACE_KEYS, SIZE_KEYS, UNCLEAR, Guess, MappedTable, guess, signed_column
-from .names import COUNTED, FORCE_WORDS, FORCES, LENGTH_WORDS, RATIO_KEYS, VOXEL, column_name, columns_by_key, other_quantity
+from .names import COUNTED, FORCE_WORDS, FORCES, LENGTH_WORDS, VOXEL, column_name, columns_by_key, other_quantity
 from .rows import ImportTable
 
 WITHOUT_FORCES = "pairs of grains that touch, without forces"

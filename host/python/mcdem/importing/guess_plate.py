@@ -10,7 +10,7 @@ from .guess_contacts import ROUGH, decide_force_unit, hertz_force
 from .guess_names import has_force, note_units
 from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
 from .mapping import UNCLEAR, Known, MappedTable, guess, signed_column
-from .names import PERCENT, PRESSURES, RATIO_KEYS, LENGTHS, column_name, columns_by_key
+from .names import PERCENT, RATIO_KEYS, LENGTHS, column_name, columns_by_key
 from .plate import SOLID_KEYS, PlateRows, import_plate
 from .record import guess_course
 from .rows import ImportTable, of_role

@@ -11,6 +11,7 @@ from .names import RATIO_KEYS, TIMES, column_name
 from .rows import FrameIndex, ImportTable, Rows
 
 TURN = 0.01  # of the stroke: smaller reversals are noise
+PRESSED = 0.1  # of the whole way, below the start
 LOAD, UNLOAD = 0, 1
 SOLID_KEYS = RATIO_KEYS[1:]  # without the strain
 BOTH = 2  # in a row's phase: the plate's way tells which
@@ -56,7 +57,8 @@ def check_heights(plate: PlateRows, start: float, first: int) -> None:
                           + (" and plate.start" if goes_down else ", plate_z and origin_z"))
     highest, down = first + int(np.nanargmax(plate.z[first:])), np.nanmin(plate.z[first:])
     high = plate.z[highest]
-    if high - start > 1e-9 * high and high - start > start - down:  # positions slightly above the start are noise
+    # Positions slightly above the start are noise; a plate that sticks is pulled beyond it after it has pressed.
+    if high - start > 1e-9 * high and start - down < PRESSED * (high - down):
         rows.problem(highest, f"the plate must go down from plate.start, {start:g} m, got {high:g} m: "
                      + ("displacements count downwards, write a - before the column's name where it counts upwards" if goes_down
                         else "see length_unit, and --set plate.start=.."))
