@@ -49,6 +49,9 @@ class NamedCentres(Centres):
         tables = self.guess_with(["grain_id", "a", "y_vox", "z_vox", "d"], lambda i, d: d)
         grains = self.of(tables, "grains")
         self.assertEqual([grains.word(key) for key in ("grain", "x", "y", "z", "diameter")], ["grain_id", "a", "y_vox", "z_vox", "d"])
+        self.expect_among(self.unclear(self.guess_with(["grain_id", "modulus", "poisson", "density", "yield"], lambda i, d: d)), "role must be confirmed")
+        tables = self.guess_with(["grain_id", "strain", "p_kPa", "q_kPa", "porosity"], lambda i, d: d)
+        self.assertEqual([table.role for table in tables], ["plate", "unused"])
         tables = self.guess_with(["a", "z_vox", "y_vox", "b", "c"], lambda i, d: d)  # z stands where x would be
         self.assertEqual([table.role for table in tables], ["plate", "unused"])
         self.expect_among(self.unclear(tables), "role must be confirmed")

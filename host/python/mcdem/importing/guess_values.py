@@ -85,13 +85,17 @@ def guess_grains_by_values(table: ImportTable) -> None:
             continue
         if not _agrees(named, c, "xyz") or named[c + 3] not in ("", "diameter", "radius"):
             continue
+        if any(column_name(name).quantity not in ("", "a length") for name in part.columns[c:c + 4]):
+            continue
         ratio = nearest_over_radii(four[:, :3], four[:, 3])
         size_key = "diameter" if 0.75 < ratio < 1.25 else "radius" if 1.5 < ratio < 2.5 else None
         if size_key:
-            mapped.role, mapped.role_certainty = "grains", "likely"
+            # Words that say nothing known may say something else.
+            certainty = UNCLEAR if part.named and not {*named[c:c + 4]} & {"x", "y", "z"} else "likely"
+            mapped.role, mapped.role_certainty = "grains", certainty
             mapped.role_why = f"columns {c + 1} to {c + 4} taken for spheres touch one another"
             for key, column in zip(("x", "y", "z", named[c + 3] or size_key), part.columns[c:]):
-                mapped[key] = guess(column, "likely", "spheres touch one another in the usual order")
+                mapped[key] = guess(column, certainty, "spheres touch one another in the usual order")
             _note_named(mapped, named, part.columns, ("grain", "frame"))
             for k in (k for k in np.flatnonzero(whole[:c]) if not named[k]):
                 different = len(np.unique(numbers[:rows, k]))
