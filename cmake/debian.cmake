@@ -19,7 +19,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME mcdem)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "pocl-opencl-icd | opencl-icd")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
   "python3-mcdem, python3-h5py, python3-matplotlib, fonts-dejavu-core, python3-plotly, python3-jinja2, python3-pandas, \
-python3-ase, python3-meshio, python3-pint")
+python3-ase, python3-meshio")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmcdem-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libboost-dev, libeigen3-dev, libfmt-dev, libhdf5-dev, \

@@ -136,6 +136,53 @@ class OfAProgramme(Import):
         self.assertEqual(imported.scans.time.tolist(), seen.scans.time.tolist())
 
 
+class OfAMachine(Import):
+    """A record with a hold of 10 s, without a run."""
+
+    KNOWN = ["--set", "box.size=[0.05, 0.05]", "--set", "plate.start=0.03", "--out"]
+
+    def write_record(self, unit="mm"):
+        time = np.arange(0, 17, 0.02)
+        down = np.interp(time, [0, 1, 4, 14, 17], [0, 0, 6, 6, 0])
+        force = np.maximum(down - 0.5, 0) ** 1.5 * (1 - 0.2 * np.clip(time - 4, 0, 10) / 10) - 0.02
+        self.write("machine.csv", f"Time [s],Extension [{unit}],Load [N]\n" + "".join(f"{t:.3f},{d:.5f},{f:.5f}\n" for t, d, f in zip(time, down, force)))
+
+    def test_is_a_programme_with_a_picture(self):
+        self.write_record()
+        made = self.imported("machine.csv", *self.KNOWN, "lab")
+        self.assertIn("lab/record.png shows what was understood of the record", made.err)
+        self.assertEqual(sorted(os.listdir("lab")), ["experiment.toml", "mapping.toml", "plate.csv", "record.png"])
+        read = read_experiment(self.folder / "lab").recording
+        self.assertEqual([read.value(f"programme.{stage}.scans") for stage in (1, 3)], [20, 20])
+        self.assertAlmostEqual(read.value("programme.2.time"), 10, delta=0.05)
+        self.assertAlmostEqual(read.value("programme.1.speed"), 2e-3, delta=2e-5)
+        self.assertAlmostEqual(read.scans.top_force.max(), 5.5**1.5, delta=0.1)
+        self.assertIn("a programme of 3 stages", self.done("experiment", "check", "lab").out)
+
+    def test_is_pictured_before_it_is_confirmed_and_no_picture_of_others_is_replaced(self):
+        self.write_record("furlong")
+        self.assertEqual(mcdem_command(*IMPORT, "machine.csv", *self.KNOWN, "lab").code, 2)
+        self.assertEqual(sorted(os.listdir("lab")), ["mapping.toml", "record.png"])
+        self.write("lab/mapping.toml", self.text("lab/mapping.toml").replace('"?m"', '"mm"').replace('"?', '"'))
+        self.imported("--mapping", "lab/mapping.toml", *self.KNOWN, "lab")
+        (self.folder / "mine").mkdir()
+        self.write("mine/record.png", "mine")
+        self.refused([*IMPORT, "machine.csv", *self.KNOWN, "mine"], "record.png: is not a figure of mcdem")
+
+
+class WithoutForces(Import):
+    def test_contacts_are_counted_by_check_and_checked(self):
+        self.write("plate.csv", "frame,plate_z_m,force_N\n0,0.012,0\n")
+        self.write("grains.csv", "frame,grain,x_m,y_m,z_m,diameter_m\n" + "".join(f"0,{7 + n},{x},0.005,0.005,0.01\n" for n, x in enumerate((0.005, 0.015))))
+        self.write("contacts.csv", "frame,grain1,grain2\n0,8,7\n")
+        self.imported("plate.csv", "grains.csv", "contacts.csv", "--set", "box.size=[0.02, 0.01]", "--out", "lab")
+        self.assertEqual(self.text("lab/topology.csv"), "frame,grain,partner\n0,0,1\n")
+        self.assertIn("1 contacts without forces in 1 of 1 frames, 1 of each grain", self.done("experiment", "check", "lab").out)
+        self.write("lab/topology.csv", "frame,grain,partner\n0,0,5\n0,1,1\n")
+        self.refused(["experiment", "check", "lab"], "topology.csv:2: grain and partner must be grains of grains.csv, 0 to 1, or a wall, got 0 and 5",
+                     "topology.csv:3: grain 1 cannot touch itself")
+
+
 class WrongOptions(Import):
     def test_are_bad_input(self):
         self.write("odd.csv", "a,b\n1,2\n1,2,3\n")

@@ -78,7 +78,7 @@ def parsed(text=TEXT, *overrides, name=""):
 
 def stated(experiment):
     recording = experiment.recording
-    return vars(experiment) | {"recording": (recording.box, recording.parameters, repr(recording.plate_start))}
+    return vars(experiment) | {"recording": (recording.box, recording.parameters, repr(recording.plate_start)), "topology": experiment.topology.tolist()}
 
 
 def first_problem(text, *overrides):

@@ -10,6 +10,7 @@ from mcdem.importing.read_mapping import parse_mapping
 GRAINS = '[[table]]\nfiles = ["a"]\nrole = "grains"\nlength_unit = "m"\nx = "-x"\n'
 LENGTH_UNIT = "length_unit must be stated: one of m, cm, mm, um, voxel"
 FORCE_UNIT = "force_unit must be stated: one of N, mN, uN, kN, cN, daN, gf, kgf, lbf"
+PLATE_UNIT = FORCE_UNIT + ", Pa, hPa, kPa, MPa, GPa, bar, mbar, psi, ksi, atm, torr, mmHg, N/mm2, N/cm2, N/m2, kN/m2, kN/mm2, mN/mm2, kgf/mm2, kgf/cm2, gf/cm2"
 # A mapping, and its problems.
 MAPPINGS = (
     ("", [" must hold at least one [[table]], got none"]),
@@ -22,15 +23,15 @@ MAPPINGS = (
         '4: "x" must be a text, or a list of texts, got something else',
         '5: length_unit must be one of "m" "cm" "mm" "um" "voxel", got "ft"',
         '6: origin_x must be a number in quotes, got "left"',
-        '7: "fx" must be a key of a table of grains, got another: remove it, or choose from frame, frames_by, grain, first_grain, where, x, '
-        "y, z, diameter, radius, volume, same_diameter, length_unit, voxel_size, origin_x, origin_y, origin_z",
+        '7: "fx" must be a key of a table of grains, got another: remove it, or choose from frame, frames_by, grain, labels, first_grain, where, x, '
+        "y, z, diameter, radius, volume, size_factor, same_diameter, length_unit, voxel_size, origin_x, origin_y, origin_z",
         "8: diameter must be one text, got 2"]),
     ('[[table]]\nrole = "contacts"\nfiles = ["a"]\n[table.walls]\n1 = "roof"\n', [
         '5: a wall must be one of "x_min" "x_max" "y_min" "y_max" "floor" "plate" "by direction", got "roof"']),
     ('[[table]]\nrole = "contacts"\nfiles = ["a"]\nwalls = 3\n', ["4: walls must be a table, [table.walls], got something else"]),
     # units and signs
     ('[[table]]\nfiles = ["a"]\nrole = "plate"\nplate_z = "h"\ntop_force = "F"\n', [
-        f"1: {LENGTH_UNIT}, got none", f"1: {FORCE_UNIT}, got none",
+        f"1: {LENGTH_UNIT}, got none", f"1: {PLATE_UNIT}, got none",
         "1: force_sign must be stated: one of +, -; +: upward force on the plate is positive; -: negative, got none"]),
     ('[[table]]\nfiles = ["a"]\nrole = "grains"\nx = "h"\n', [f"1: {LENGTH_UNIT}, got none"]),
     ('[[table]]\nfiles = ["a"]\nrole = "grains"\nx = "h"\nlength_unit = "voxel"\n', [

@@ -116,7 +116,7 @@ class Import(ImportCase):
         self.assertEqual([*imported.plate.phase[6:]], ["unload", "load", "unload"], "down again")
         self.known.plate_start = np.nan
         self.expect_one(self.problems_of(lambda: import_tables(tables, self.known)),
-                        "plate.csv: displacements count downwards from plate.start")
+                        "plate.csv: displacement counts downwards from plate.start")
 
     def test_a_mapping_serves_other_files(self):
         tables = self.guess(self.write_lab())

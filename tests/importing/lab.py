@@ -8,7 +8,7 @@ import tempfile
 import unittest
 from dataclasses import dataclass, field
 
-MISSING = [name for name in ("numpy", "pandas", "ase", "meshio", "pint") if not importlib.util.find_spec(name)]
+MISSING = [name for name in ("numpy", "pandas", "ase", "meshio", "scipy") if not importlib.util.find_spec(name)]
 if MISSING:
     print(f"skipped: {', '.join('python3-' + name for name in MISSING)} not installed")
     sys.exit(77)

@@ -73,7 +73,7 @@ class Forces(ImportCase):
         self.write("kraft.csv", Style(",", ".").table(["Platen position (mm)", "Load (N)"], rows))
         self.assertEqual(self.of(self.guess(files), "plate").word("plate_z"), "Platen position (mm)")
         self.write("kraft.csv", Style(",", ".").table(["Jaw (mm)", "Load (N)"], rows))
-        self.expect_among(self.unclear(self.guess(files)), "no column is named as plate_z or displacement, which a plate's table must have; "
+        self.expect_among(self.unclear(self.guess(files)), "no column is named as plate_z or displacement or strain or fraction or void_ratio or porosity, which a plate's table must have; "
                                                            "other columns: Jaw (mm)")
 
 
@@ -177,14 +177,13 @@ class Images(ImportCase):
         tables = self.expect_import(self.spam_labels())
         self.assertEqual(self.of(tables, "grains")["z"].words, ["Zpos", "Zdisp"])
 
-    def test_contacts_of_spam_without_forces_are_unused(self):
+    def test_contacts_of_spam_without_forces_tell_who_touches(self):
         self.known.voxel_size = VOXEL
         pairs = [(i, i + 1, 0.5, 0.5, 0.7, 12) for i in range(1, 30)]
         contacts = self.write("contacts.csv", Style(",", ".").table(["label1", "label2", "orientZ", "orientY", "orientX", "voxels"], pairs))
-        tables = self.expect_import(self.spam_labels() + [contacts])
-        unused = next(table.map for table in tables if table.map.files == [contacts])
-        self.assertEqual((unused.role, unused.role_certainty), ("unused", "likely"))
-        self.assertIn("without forces", unused.role_why)
+        tables = self.guess(self.spam_labels() + [contacts])
+        found = self.of(tables, "contacts")
+        self.assertEqual((found.role_certainty, found.role_why), ("likely", "pairs of grains that touch, without forces"))
 
     def test_spams_contacts_with_forces_are_contacts(self):
         from lab import PRESSED

@@ -31,11 +31,12 @@ Examples:
   mcdem experiment import data/second/* --mapping out/lab/mapping.toml --metadata data/known.toml --out out/second"""
 
 MAPPING = "mapping.toml"
+PICTURE = "record.png"  # of a testing machine's record
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("TABLE", nargs="*",
-                        help="Tables of the plate, the grains and the contacts: text, dumps of LAMMPS and LIGGGHTS, text and VTK of Yade, "
+                        help="Tables of the plate, the grains and the contacts: text, raw files of testing machines, dumps of LAMMPS and LIGGGHTS, text and VTK of Yade, "
                              "extended xyz, regions of scikit-image, trackpy's and SPAM's tables; any may be packed with gzip")
     parser.add_argument("--out", metavar="DIR", type=output_path, required=True, help="Folder to create")
     parser.add_argument("--mapping", metavar="FILE", default="",
@@ -46,6 +47,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--metadata", metavar="FILE", default="", help="The same from a file in the format of experiment.toml")
     parser.add_argument("--voxel-size", metavar="LENGTH", type=number(lambda edge: 0 < edge <= 1, "> 0 and <= 1 [m]"),
                         help="Edge length of a voxel [m], for tables of images in voxels")
+    parser.add_argument("--area", metavar="M2", type=number(lambda area: 0 < area <= 400, "> 0 and <= 400 [m2]"),
+                        help="Area on which pressures of the plate's table act [m2]; default: the container's cross-section")
+    parser.add_argument("--mass", metavar="KG", type=number(lambda mass: mass > 0, "> 0 [kg]"),
+                        help="Mass of all grains [kg], for tables with relative density, void ratio or porosity in place of a height; without "
+                             "it plate.start is the height of the first row")
+    parser.add_argument("--solid-density", metavar="KG/M3", type=number(lambda density: density > 0, "> 0 [kg/m3]"),
+                        help="Density of the grains' material [kg/m3], required by --mass")
     parser.add_argument("--name", metavar="TEXT", default="",
                         help="Name of the experiment (default: that of the metadata, or of the folder)")
     parser.add_argument("--gzip", action="store_true", help="Compress the tables with gzip")
@@ -53,8 +61,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from ..experiment.publish import expect_free, work_folder
+    from ..outputs import FIGURE, expect_replaceable
     from ..problems import Problems
     expect_free(options.out)
+    expect_replaceable(os.path.join(options.out, PICTURE), FIGURE)
     problems = Problems()
     settings = _settings(options, problems)
     with work_folder(options.out) as folder:
@@ -74,11 +84,13 @@ def _settings(options: argparse.Namespace, problems: "Problems") -> "Experiment"
     return replace(settings, name=options.name or settings.name or os.path.basename(os.path.abspath(options.out)))
 
 
-def _known(settings: "Experiment", voxel_size: float | None) -> "Known":
+def _known(settings: "Experiment", options: argparse.Namespace) -> "Known":
     """What the import knows without the tables; where a value is missing, its default."""
     from ..importing.mapping import Known
-    known = {"youngs_modulus": settings.materials.get("grains.youngs_modulus"),
-             "poisson_ratio": settings.materials.get("grains.poisson_ratio"), "voxel_size": voxel_size}
+    if (options.mass is None) != (options.solid_density is None):
+        raise InputError("--mass: needs --solid-density, and the other way round: their ratio is the volume of the grains")
+    known = {"area": options.area, "solid_volume": options.mass / options.solid_density if options.mass else None, "youngs_modulus": settings.materials.get("grains.youngs_modulus"),
+             "poisson_ratio": settings.materials.get("grains.poisson_ratio"), "voxel_size": options.voxel_size}
     recording = settings.recording
     return Known(box=(recording.box.size_x, recording.box.size_y), shape=recording.box.shape, plate_start=recording.plate_start,
                  programme=recording.has_programme, **{name: value for name, value in known.items() if value is not None})
@@ -88,7 +100,7 @@ def _import(options: argparse.Namespace, settings: "Experiment", problems: "Prob
     """Makes the experiment in the new folder `work` and moves it to the folder of --out."""
     from ..experiment.publish import publish, read_back
     from ..importing.import_files import import_files
-    attempt = import_files(options.TABLE, _known(settings, options.voxel_size), os.path.join(options.out, MAPPING), options.mapping,
+    attempt = import_files(options.TABLE, _known(settings, options), os.path.join(options.out, MAPPING), options.mapping,
                            problems.lines())
     if not attempt.imported:
         _refuse(options, attempt, attempt.problems, attempt.has_wrong_rows)
@@ -100,9 +112,18 @@ def _import(options: argparse.Namespace, settings: "Experiment", problems: "Prob
         if not options.mapping:
             _refuse(options, attempt, error.problems, True)
         raise
+    _write_picture(options, attempt)
     for note in attempt.imported.notes:
         say(note)
     return experiment
+
+
+def _write_picture(options: argparse.Namespace, attempt: "Attempt") -> None:
+    from ..outputs import FIGURE, replace_own
+    if attempt.picture:
+        file = os.path.join(options.out, PICTURE)
+        replace_own(file, FIGURE, attempt.picture)
+        say(f"{file} shows what was understood of the record")
 
 
 def _write(work: pathlib.Path, mapping: str, imported: "Imported", settings: "Experiment", gzip: bool) -> None:
@@ -115,7 +136,7 @@ def _write(work: pathlib.Path, mapping: str, imported: "Imported", settings: "Ex
     work.mkdir()
     write_tables(imported, work, gzip)
     write_files(work, {MAPPING: mapping.encode(errors="surrogateescape"),
-                       SETTINGS_FILE: settings_text(settings).encode(errors="surrogateescape")})
+                       SETTINGS_FILE: (settings_text(settings) + imported.programme).encode(errors="surrogateescape")})
 
 
 def _refuse(options: argparse.Namespace, attempt: "Attempt", problems: Sequence[str], wrong_rows: bool) -> NoReturn:
@@ -126,6 +147,7 @@ def _refuse(options: argparse.Namespace, attempt: "Attempt", problems: Sequence[
     make_folder(options.out)
     if not create_whole(file, attempt.mapping.encode(errors="surrogateescape")):
         raise InputError(f"{file}: another program has just written it")
+    _write_picture(options, attempt)
     what = (f"repair the tables, remove {file} and import again; or correct the wrong entries of {file} and import with --mapping {file}"
             if wrong_rows else f"correct the entries of {file} that begin with a question mark, remove the marks, and import again with "
             f"--mapping {file}")

@@ -8,7 +8,7 @@ from ..results.parameters import Parameters, without_quotes
 from ..results.recording import Recording
 from .container import container_words
 from .experiment import Experiment
-from .findings import CONTACTS, GRAINS, PLATE, SETTINGS, Finding, Findings, contacts_of, mean_diameter, note, positions_of
+from .findings import CONTACTS, GRAINS, PLATE, SETTINGS, TOPOLOGY, Finding, Findings, contacts_of, mean_diameter, note, positions_of
 
 SHOWN_BY = {"position": "relaxation", "force": "creep", "stress": "relaxation"}  # by a hold that keeps it
 
@@ -22,6 +22,11 @@ def describe(experiment: Experiment) -> Findings:
         yield note(GRAINS, f"{len(recording.diameter)} grains of {smallest:.4g} to {largest:.4g} mm, {mean:.4g} mm on average, in "
                            f"{sum(1 for _ in positions_of(recording))} of {len(recording.scans)} frames")
     yield from _contacts(recording)
+    if len(of_pairs := experiment.topology):
+        frames = len(np.unique(of_pairs[:, 0]))
+        ends = len(of_pairs) + int((of_pairs[:, 2] >= 0).sum())
+        yield note(TOPOLOGY, f"{len(of_pairs)} contacts without forces in {frames} of {len(recording.scans)} frames, "
+                             f"{ends / frames / len(recording.diameter):.3g} of each grain")
     yield from _settings(experiment)
 
 

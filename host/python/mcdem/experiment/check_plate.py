@@ -11,6 +11,8 @@ from .plate import scan_places
 CLEAR_LOAD = 10  # over the threshold of a contact
 MAX_NOISE = 0.01  # of plate positions, over the stroke
 FALLS = 0.5  # ratio of the force at the end of loading to the largest force before
+REST = 0.005  # of the stroke: frame 0 is at plate.start
+MAX_AT_REST = 0.05  # of the largest force, in frame 0 at plate.start
 MAX_ERROR = 0.05  # of positions and diameters, over the diameter
 LOADED, UNLOADED = 0.3, 0.02  # of the maximum top force
 GAP_UNDER_LOAD = 0.1  # over the diameter: tilt, contacts by surface displacement
@@ -72,6 +74,10 @@ def _check_gauge(experiment: Experiment) -> Findings:
     force = scans.top_force
     yield from odd_items(PLATE, "the top force is negative, though the grains press the plate up: ",
                          [(scans.frame, force < 0, lambda s: f"{force[s]:.3g} N")])
+    at_rest = scans.plate_z[0] >= experiment.recording.plate_start - REST * np.ptp(scans.plate_z)
+    if at_rest and force[0] > MAX_AT_REST * force.max() and not len(experiment.recording.diameter):  # with grains their overlaps tell it
+        yield odd(PLATE, f"frame 0, at plate.start, carries {100 * force[0] / force.max():.2g} % of the largest top force, {force[0]:.3g} N: is "
+                         "plate.start the height at which the plate first touches, and is the gauge's zero taken off?")
     loading = force[(scans.phase == Phase.load) & (scans.cycle == scans.cycle[0])]
     largest, last = loading.max(initial=0), loading[-1] if len(loading) else 0
     if last < FALLS * largest and largest > CLEAR_LOAD * experiment.measurement.force_threshold:

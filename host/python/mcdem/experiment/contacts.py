@@ -22,7 +22,7 @@ def read_contacts(file: pathlib.Path, modulus: float, recording: Recording, prob
 
     Raises InputError, RunError, OSError.
     """
-    kinds = {"frame": WHOLE, "grain": WHOLE, "partner": _partner(recording.box)} | dict.fromkeys(POINT + FORCE, NUMBER)
+    kinds = {"frame": WHOLE, "grain": WHOLE, "partner": partner_kind(recording.box)} | dict.fromkeys(POINT + FORCE, NUMBER)
     table = read_table(file, kinds, {}, largest, problems)
     if table is None:
         return recording
@@ -44,7 +44,7 @@ def read_contacts(file: pathlib.Path, modulus: float, recording: Recording, prob
     return recording if found.count else _with_contacts(recording, contacts, table["frame"])
 
 
-def _partner(box: Box) -> Kind:
+def partner_kind(box: Box) -> Kind:
     """A grain, or a wall as -1 - wall."""
     walls = {box.wall_name(wall): -1 - wall for wall in walls_of(box)}
 

@@ -3,8 +3,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from ..number_text import shortest
-from ..results.recording import Recording
+from ..results.recording import Ints, Recording
 
 # The scene keys that `materials` may contain, and those of `uncertainty`.
 MATERIALS = ("grains.youngs_modulus", "grains.poisson_ratio", "grains.excess_density", "grains.friction", "grains.restitution",
@@ -43,3 +45,4 @@ class Experiment:
     plate_speed: float | None = None  # [m/s]; None: slow
     plate_pause: float = 0.0  # the plate stands for this time at each scan [s]; 0: it does not stop
     plate_hold: float = 0.0  # .. at the lowest position [s]
+    topology: Ints = field(default_factory=lambda: np.zeros((0, 3), int))  # (N, 3) contacts without forces: frame, grain, partner

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..results.recording import Bools, Contacts, Floats, Ints, Recording
 
-SETTINGS, PLATE, GRAINS, CONTACTS = "experiment.toml", "plate.csv", "grains.csv", "contacts.csv"
+SETTINGS, PLATE, GRAINS, CONTACTS, TOPOLOGY = "experiment.toml", "plate.csv", "grains.csv", "contacts.csv", "topology.csv"
 
 
 class Severity(IntEnum):

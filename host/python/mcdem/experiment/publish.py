@@ -20,7 +20,7 @@ from ..outputs import locked_folder, make_folder_of, output_folder, remove_tempo
 from ..program import message_of
 from .experiment import Experiment
 from .read import read_experiment
-from .write import SETTINGS_FILE, TABLES, sums_text, sync_folder, write_files
+from .write import ALL_TABLES, SETTINGS_FILE, sums_text, sync_folder, write_files
 
 KEPT = "mapping.toml"  # the one that is there stays
 JOURNAL = ".experiment-unfinished"  # SHA-256 and names of the files, as `sha256sum` writes them
@@ -122,7 +122,7 @@ def _expect_no_other(out: str) -> None:
     for taken in (SETTINGS_FILE, "run.h5", "checkpoint.h5"):
         if is_there(os.path.join(out, taken)):
             raise InputError(f"--out: {out} holds another experiment or run: name another folder")
-    for name in (table + end for table in TABLES for end in ("", ".gz")):
+    for name in (table + end for table in ALL_TABLES for end in ("", ".gz")):
         if is_there(os.path.join(out, name)):
             raise InputError(f"--out: {out} already contains {name}, which would become part of this experiment: choose another folder, "
                              "or remove the file first")

@@ -20,6 +20,7 @@ from .grains import read_grains
 from .plate import read_plate
 from .settings import read_settings
 from .table import LARGEST_TABLE, find_table
+from .topology import read_topology
 
 LARGEST_SETTINGS = 1_000_000  # [bytes]
 
@@ -40,8 +41,13 @@ def read_experiment(folder: Path, largest: int = LARGEST_TABLE) -> Experiment:
         problems.report()
         if math.isnan(recording.plate_start):
             recording = replace(recording, plate_start=float(recording.scans.plate_z.max()))
+        topology = np.zeros((0, 3), int)
+        with _refusal(folder, "read"):
+            if (file := find_table(folder, "topology.csv", largest, problems)) is not None:
+                topology = read_topology(file, recording, problems, largest)
+        problems.report()
         averaged = with_contact_averages(recording.scans, recording.box, len(recording.diameter), settings.measurement.force_threshold)
-        return replace(settings, recording=replace(recording, scans=averaged))
+        return replace(settings, topology=topology, recording=replace(recording, scans=averaged))
 
 
 def read_experiments(folders: Sequence[Path], option: str) -> list[Experiment]:

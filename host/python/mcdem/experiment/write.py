@@ -25,6 +25,7 @@ from .settings import settings_text
 SETTINGS_FILE = "experiment.toml"
 SUMS_FILE = "SHA256SUMS"
 TABLES = ("contacts.csv", "grains.csv", "plate.csv")
+ALL_TABLES = (*TABLES, "topology.csv")
 WINDOW_OF_GZIP = 15 + 16  # of zlib: the header has no time stamp
 NO_SYNC = errno.EINVAL, errno.EROFS  # errors of file systems that cannot flush
 
@@ -53,7 +54,7 @@ def write_experiment(folder: Path, experiment: Experiment, gzip: bool = False) -
     make_folder(folder)
     files = experiment_files(experiment, gzip)
     settings = {SETTINGS_FILE: files.pop(SETTINGS_FILE)}
-    for name in (table + end for table in TABLES for end in ("", ".gz")):
+    for name in (table + end for table in ALL_TABLES for end in ("", ".gz")):
         if name not in files:
             pathlib.Path(folder, name).unlink(missing_ok=True)
     write_files(folder, files)

@@ -10,11 +10,13 @@ from ..files import write_whole
 from ..look import Path
 from ..number_text import shortest
 from ..problems import Problems
+from .arrays import Ints
 from .boxes import check_boxes
 from .contacts import ContactFrames, import_contacts
 from .grains import GrainFrames, import_grains
 from .mapping import WALLS, Known
-from .plate import PlateRows, check_heights, import_plate
+from .plate import PlateRows, check_heights, import_plate, needs_start
+from .record import import_course
 from .rows import ImportTable, Rows, of_role
 
 # For the two sides of a contact: largest difference over the larger force; weak forces over the largest one of the frame.
@@ -30,12 +32,15 @@ class Imported:
     contacts: pd.DataFrame | None
     plate_start: float
     notes: list[str] = field(default_factory=list)
+    topology: pd.DataFrame | None = None  # contacts without forces
+    programme: str = ""  # [[programme]] of experiment.toml
 
 
 class _Assembly:
     def __init__(self, tables: list[ImportTable], known: Known) -> None:
         self.tables, self.known, self.problems = tables, known, Problems()
         self.plate, self.grains, self.notes, self.dropped = PlateRows(), GrainFrames(), list[str](), 0
+        self.topology = list[pd.DataFrame]()
 
     def run(self) -> Imported:
         plates, grains, contacts = (of_role(self.tables, role) for role in ("plate", "grains", "contacts"))
@@ -43,12 +48,15 @@ class _Assembly:
         if len(plates) != 1:
             self.problems.add("plate", f"must be one table with the plate's position and force by frame, got {len(plates)}: say "
                               '`role = "plate"` in the mapping, or give the table')
-        elif "displacement" in plates[0].map and np.isnan(start):
-            self.problems.add(plates[0].map.files[0], "displacements count downwards from plate.start, which must be given [m]: --set "
+        elif needs_start(plates[0].map) and np.isnan(start):
+            self.problems.add(plates[0].map.files[0], f"{plates[0].map.place} counts downwards from plate.start, which must be given [m]: --set "
                               "plate.start=..")
+        elif plates[0].map.word("course") == "stages":
+            return self.of_record(plates[0], len(grains) + len(contacts))
         else:
             self.plate = import_plate(plates[0], start, self.problems, self.known.programme)
         self.grains = import_grains(grains, self.problems)
+        self.notes += self.grains.notes
         check_boxes(self.grains, self.known, self.problems, self.notes)
         if contacts and not grains:
             self.problems.add("grains", "must be a table of the grains, for contacts name them, got none")
@@ -58,9 +66,23 @@ class _Assembly:
         check_heights(self.plate, start, self.dropped)
         tables = list[pd.DataFrame]()
         for table in contacts if -1 not in self.grains.row else ():
-            tables.append(self.contacts_of(table, tables))
+            if table.map.is_topology:
+                self.topology.append(self.topology_of(table))
+            else:
+                tables.append(self.contacts_of(table, tables))
         self.problems.report()
         return self.result(pd.concat(tables) if tables else None)
+
+    def of_record(self, table: ImportTable, others: int) -> Imported:
+        """Of a testing machine, without grains."""
+        if others or self.known.programme:
+            self.problems.add(table.map.files[0], 'course = "stages" must stand alone, got ' + ("tables of grains" if others else "[[programme]]")
+                              + ' too: write course = "rows" in the mapping')
+            self.problems.report()
+        programme = import_course(table, self.known, self.problems)
+        self.problems.report()
+        assert programme is not None
+        return Imported(programme.plate, None, None, programme.start, self.notes, programme=programme.text)
 
     def place_grains(self, by: str) -> None:
         def wrong(frame: int, topic: str, what: str) -> None:
@@ -86,16 +108,30 @@ class _Assembly:
             self.dropped = min(grains.row)
             self.notes.append(f"the plate's first {self.dropped} rows are left out: grains are known from then on")
 
-    def contacts_of(self, table: ImportTable, before: list[pd.DataFrame]) -> pd.DataFrame:
-        """Each contact once, with grain < partner, by row of the plate."""
-        by = table.map.word("frames_by", "plate")
+    def topology_of(self, table: ImportTable) -> pd.DataFrame:
+        """Pairs that touch, each once in a frame, by row of the plate."""
         frames = import_contacts(table, self.grains, self.problems)
+        scan = self.scans_of(table, frames)[frames.frame]
+        swapped = (frames.partner >= 0) & (frames.partner < frames.grain)
+        pairs = pd.DataFrame({"frame": scan - self.dropped, "grain": np.where(swapped, frames.partner, frames.grain),
+                              "partner": np.where(swapped, frames.grain, frames.partner)})
+        return pairs[pairs.frame >= 0].drop_duplicates().sort_values(["frame", "grain", "partner"], kind="stable")
+
+    def scans_of(self, table: ImportTable, frames: ContactFrames) -> Ints:
+        """The plate's row of each frame; a frame with contacts that has none is a problem."""
+        by = table.map.word("frames_by", "plate")
         scans = self.grains.plate_rows_of(by, frames.keys)
         for i in np.flatnonzero(scans[frames.frame] < 0)[:1]:
             key = shortest(frames.keys[frames.frame[i]])
             whose = "grains' frames" if by == "grains" else "plate's rows"
             frames.rows.problem_once("frame", frames.row[i], f"frame {key} must be one of the {whose}, got none like it: see frame and "
                                      "frames_by in the mapping")
+        return scans
+
+    def contacts_of(self, table: ImportTable, before: list[pd.DataFrame]) -> pd.DataFrame:
+        """Each contact once, with grain < partner, by row of the plate."""
+        frames = import_contacts(table, self.grains, self.problems)
+        scans = self.scans_of(table, frames)
         reversed_ = (frames.partner >= 0) & (frames.partner < frames.grain)
         force = np.where(reversed_, -1, 1)[:, None] * frames.force
         all_of = pd.DataFrame({"scan": scans[frames.frame], "grain": np.where(reversed_, frames.partner, frames.grain),
@@ -172,7 +208,11 @@ class _Assembly:
             contacts["partner"] = contacts.partner.map(lambda p: WALLS[-1 - p] if p < 0 else p)
             contacts["scan"] -= first
             contacts.columns = ["frame", "grain", "partner", "x_m", "y_m", "z_m", "fx_N", "fy_N", "fz_N"]
-        return Imported(plate_table, grain_table, contacts, start, self.notes)
+        topology = pd.concat(self.topology) if self.topology else None
+        if topology is not None:
+            self.notes.append(f"{len(topology)} contacts have no forces: topology.csv keeps which grains touch")
+            topology["partner"] = topology.partner.map(lambda p: WALLS[-1 - p] if p < 0 else p)
+        return Imported(plate_table, grain_table, contacts, start, self.notes, topology=topology)
 
 
 def import_tables(tables: list[ImportTable], known: Known) -> Imported:
@@ -181,7 +221,7 @@ def import_tables(tables: list[ImportTable], known: Known) -> Imported:
 
 def write_tables(imported: Imported, folder: Path, packed: bool = False) -> None:
     """Writes a table if it has rows, with the shortest digits that give the same numbers when read; flushes it to disk."""
-    for name in ("plate", "grains", "contacts"):
+    for name in ("plate", "grains", "contacts", "topology"):
         table = getattr(imported, name)
         if table is not None and len(table):
             file = os.path.join(folder, name + ".csv" + (".gz" if packed else ""))

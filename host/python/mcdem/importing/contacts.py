@@ -37,9 +37,9 @@ class _Reader:
         self.offset = whole_entry(self.map, "id_offset", problems)
         self.one_wall = self.map.word("partner") if self.map.word("partner") in WALLS else None
 
-    def side_of(self, key: str, name: float | str) -> int:
-        """A grain, a wall, SOME_WALL, REVERSED or NOBODY. `name` is a number or a text."""
-        grain = int(self.grains.number_of(int(name) + self.offset)) if isinstance(name, float) and is_whole(name) else -1
+    def side_of(self, key: str, name: float | str, frame: int) -> int:
+        """A grain, a wall, SOME_WALL, REVERSED or NOBODY. `name` is a number or a text; `frame`: of the grains."""
+        grain = int(self.grains.number_of(int(name) + self.offset, frame)) if isinstance(name, float) and is_whole(name) else -1
         wall = self.map.walls.get(shortest(name) if isinstance(name, float) else name)
         if wall and (key == "partner" or grain < 0):  # numbers of meshes may equal those of grains
             return SOME_WALL if wall.word == BY_DIRECTION else wall_partner(wall.word)
@@ -47,26 +47,31 @@ class _Reader:
             return REVERSED if name[0] in "xy" and self.grains.sign["xy".index(name[0])] < 0 else wall_partner(name)
         return grain if grain >= 0 else NOBODY
 
-    def sides(self, key: str, wanted: Bools) -> Ints:
-        """Partner of each row; unknown partners in `wanted` rows are problems."""
+    def sides(self, key: str, at: Ints, wanted: Bools) -> Ints:
+        """Partner of each row, in frame `at` of the grains; unknown partners in `wanted` rows are problems, but not where grains are linked."""
         if key == "partner" and self.one_wall:
             return np.full(len(self.rows), wall_partner(self.one_wall))
         names = self.rows.cells(key).astype(object)
         for i in np.flatnonzero(pd.isna(names)):
             names[i] = self.rows.text(i, key)
-        which, names = pd.factorize(names)
-        sides = np.array([self.side_of(key, name) for name in names], int)[which]
+        frames = at if self.grains.labels else np.zeros(len(names), int)
+        sides = np.full(len(names), NOBODY)
+        for frame in np.unique(frames):
+            mine = np.flatnonzero(frames == frame)
+            which, different = pd.factorize(names[mine])
+            sides[mine] = np.array([self.side_of(key, name, frame) for name in different], int)[which]
         for i in np.flatnonzero((sides == REVERSED) & wanted)[:1]:
-            wall = names[which[i]]
+            wall = names[i]
             self.rows.problem_once(wall, i, f'{wall} must be named in [table.walls] where {wall[0]} is reversed, {wall} = "x_min" or another')
-        for i in np.flatnonzero((sides == NOBODY) & wanted)[:20]:
+        nobody = np.flatnonzero((sides == NOBODY) & wanted)
+        for i in nobody[:0 if self.grains.labels else 20]:
             self.rows.problem(i, f"{key} must be a grain, or a wall that [table.walls] of the mapping names, got "
                               + quoted(self.rows.text(i, key)))
         return np.asarray(np.maximum(sides, NOBODY))
 
-    def partners(self, wanted: Bools) -> tuple[Ints, Ints, Bools, Bools]:
+    def partners(self, at: Ints, wanted: Bools) -> tuple[Ints, Ints, Bools, Bools]:
         """Grain and partner of each row, whether they were exchanged, and which rows are complete."""
-        first, second = self.sides("grain", wanted), self.sides("partner", wanted)
+        first, second = self.sides("grain", at, wanted), self.sides("partner", at, wanted)
         swapped = first < 0  # Yade lists walls first
         grain, partner = np.where(swapped, second, first), np.where(swapped, first, second)
         known = wanted & (first != NOBODY) & (second != NOBODY)
@@ -95,7 +100,7 @@ class _Reader:
         return np.asarray(self.map.force_factor() * self.rows.number("force", known)[:, None] * away)
 
     def read(self) -> ContactFrames:
-        forces = ["force"] if "force" in self.rows else ["fx", "fy", "fz"]
+        forces = [] if self.map.is_topology else ["force"] if "force" in self.rows else ["fx", "fy", "fz"]
         if self.rows.lacks("grain", *([] if self.one_wall else ["partner"]), *forces) or not len(self.rows):
             return ContactFrames(self.rows)
         starts = self.rows.frames()[:-1]
@@ -106,15 +111,15 @@ class _Reader:
         frames = ContactFrames(self.rows, keys)
         frame = np.searchsorted(starts, np.arange(len(self.rows)), "right") - 1
         # A frame without contacts counts in the order as well.
-        grain, partner, swapped, known = self.partners(self.rows.wanted())
         at = self.grains.frames_of(self.map.word("frames_by", "plate"), keys)[frame]
-        force = self.forces(grain, partner, swapped, at, known)
+        grain, partner, swapped, known = self.partners(at, self.rows.wanted())
+        force = self.forces(grain, partner, swapped, at, known) if forces else np.zeros((len(grain), 3))
         point = np.full((len(grain), 3), np.nan)
         if all(key in self.rows for key in "xyz"):
             point = self.rows.numbers("xyz", known) * self.map.length_factor() - self.grains.origin
             known &= np.isfinite(point).all(axis=1)
         # Grains without force do not touch; LAMMPS lists them as well.
-        kept = known & np.isfinite(force).all(axis=1) & (force != 0).any(axis=1)
+        kept = known & np.isfinite(force).all(axis=1) & ((force != 0).any(axis=1) | (not forces))
         by_force = -1 - np.argmax(np.nan_to_num(force) @ INWARDS.T, axis=1)  # the wall whose normal is closest to the force
         frames.partner = np.where(partner == SOME_WALL, by_force, partner)[kept]
         frames.frame, frames.grain, frames.point, frames.force = frame[kept], grain[kept], point[kept], force[kept]

@@ -10,11 +10,12 @@ from ..errors import InputError
 from ..problems import Problems
 from .grains import GrainFrames, import_grains
 from .guess_contacts import guess_contact_meaning
-from .guess_frames import guess_frames
+from .guess_frames import guess_frames, guess_links
 from .guess_lengths import guess_grain_lengths, guess_grains_upwards
 from .guess_names import guess_by_names, note_units
 from .guess_plate import guess_plate_units
 from .guess_values import guess_contacts_by_values, guess_grains_by_values, guess_plate_by_values
+from .joins import join_tables, joined
 from .mapping import UNCLEAR, Known, MappedTable, columns_of, guess, must_be_stated, signed_column, unused_columns
 from .plate import import_plate
 from .rows import ImportTable, of_role
@@ -52,11 +53,14 @@ def _grains_so_far(tables: list[ImportTable]) -> GrainFrames:
 
 def guess_tables(files: Sequence[str], known: Known) -> list[ImportTable]:
     tables = _group(read_tables(files))
+    join_tables(tables)
     for table in tables:
         guess_by_names(table)
         if table.role == "unused":
             guess_grains_by_values(table)
             note_units(table.map)
+    for table in of_role(tables, "grains"):
+        guess_links(table)
     guess_grains_upwards(tables)
     for table in of_role(tables, "grains"):
         guess_grain_lengths(table, known)
@@ -134,6 +138,9 @@ def read_import_tables(mapping: list[MappedTable], files: Sequence[str] = (), fi
     """Reads the files of the tables in a mapping. `files`, if given, replace those of the mapping: each is assigned to the
     table whose columns it has."""
     tables, problems = [ImportTable(mapped.changed(), []) for mapped in mapping], list[str]()
+    if files and (of_several := [table.map for table in tables if table.map.joined]):
+        raise InputError(f"{file}:{of_several[0].line}: the mapping must name the files where tables are joined, got others with the command: write them "
+                         "into files and joined")
     if files:
         tables = [table for table in tables if table.role != "unused"]
         before = [table.map.files[0] for table in tables]
@@ -150,4 +157,8 @@ def read_import_tables(mapping: list[MappedTable], files: Sequence[str] = (), fi
             problems += error.problems
     if problems:
         raise InputError(problems)
+    for table in tables:
+        if table.map.joined:
+            table.parts = [joined(part, table.map.word("grain"), other, table.map.joined_by)
+                           for part, other in zip(table.parts, read_tables(table.map.joined), strict=True)]
     return tables

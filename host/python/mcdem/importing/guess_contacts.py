@@ -84,7 +84,7 @@ def _unknown_partners(table: ImportTable, grains: GrainFrames, offset: int, most
             column = part.columns.index(table.map.word(key))
             numbers = part.numbers(column)[:most]
             texts = {part.text(row, column) for row in np.flatnonzero(np.isnan(numbers))}
-            numbers = numbers[(grains.number_of(numbers + offset) < 0) & (np.abs(numbers) < 2e9)]
+            numbers = numbers[~grains.has_name(numbers + offset) & (np.abs(numbers) < 2e9)]
             found |= {*map(shortest, np.unique(numbers)[:20])} | {text for text in sorted(texts)[:20] if text.lower() not in NOTHING}
     return sorted(found - {*WALLS})[:20]
 
@@ -231,6 +231,8 @@ def guess_contact_meaning(table: ImportTable, grains: GrainFrames, known: Known)
         table.map["id_offset"] = guess("0", UNCLEAR, "the grains' table cannot be read so far")
         return
     _guess_offset(table, grains)
+    if table.map.is_topology:
+        return
     _guess_force_on(table, _Places(table, grains), grains, known.box)
     places = _Places(table, grains)
     _guess_walls(table, places.all, grains, known)

@@ -1,12 +1,18 @@
 """Guesses which frames of the tables belong together."""
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from ..problems import Problems
+from .links import LOST, link, same_labels
 from .mapping import UNCLEAR, Guess, guess
 from .names import COUNTED, TIMES, ColumnName, column_name, columns_by_key
 from .rows import FrameIndex, ImportTable, Rows, of_role
+
+
+LEAST_LINKED, FRAMES_COMPARED = 20, 3  # grains of a frame; pairs of frames
+MOSTLY = 0.8
 
 
 class _Frames(NamedTuple):
@@ -100,6 +106,31 @@ def _match(frames: _Frames, plate: _Frames, grains: _Frames | None) -> Guess:
     if frames.all_among(plate):
         return _by_numbers("plate", frames, plate)
     return _between_rows(frames, plate) or _in_order(frames, plate)
+
+
+def guess_links(table: ImportTable) -> None:
+    """Whether grains keep their numbers: those of the first frames that have the same number are compared by their places."""
+    if not all(key in table.map for key in ("grain", "x", "y", "z")):
+        return
+    rows = Rows(table, Problems())
+    ids, centres, wanted = rows.number("grain"), rows.numbers("xyz"), rows.wanted()
+    wanted = wanted & np.isfinite(ids) & np.isfinite(centres).all(axis=1)
+    starts = rows.frames()
+    frames = [begin + np.flatnonzero(wanted[begin:end]) for begin, end in zip(starts, starts[1:])]
+    pairs = [(a, b) for a, b in pairwise(frames) if min(len(a), len(b)) >= LEAST_LINKED][:FRAMES_COMPARED]
+    if any(len(np.unique(ids[a])) < len(a) for pair in pairs for a in pair):
+        return
+    alike = min((same_labels(ids[a], centres[a], ids[b], centres[b]) for a, b in pairs), default=1.0)
+    other = sum(not np.array_equal(np.sort(ids[a]), np.sort(ids[b])) for a, b in pairs)
+    if alike > MOSTLY and not other:
+        return
+    found = min((float(np.mean(link(centres[a], centres[b]).row != LOST)) for a, b in pairs), default=0.0)
+    if alike > MOSTLY:
+        table.map["labels"] = guess("linked", UNCLEAR, "numbers are alike in frames, but not all frames have the same: are grains lost and doubled? Then they "
+                                    "are put where their neighbours' displacement says, or left out, and listed")
+    elif found > MOSTLY:
+        table.map["labels"] = guess("linked", "likely", f"only {100 * alike:.0f} % of the numbers are at their places in the next frame, and {100 * found:.0f} % of "
+                                    "the grains have one there")
 
 
 def guess_frames(tables: list[ImportTable]) -> None:

@@ -11,6 +11,10 @@ from .names import LENGTHS, DOWNWARDS, VOXEL, column_name
 from .rows import ImportTable, of_role
 
 
+# Distance of nearest neighbours over the sum of their radii, beyond which sizes are doubted: soft grains under load overlap.
+SQUEEZED, BIASED = 0.75, 1.08
+
+
 def plain_grains(table: ImportTable) -> GrainFrames:
     """The grains with their raw numbers taken as metres."""
     return import_grains([table.changed(length_unit=guess("m", "stated", ""))], Problems())
@@ -77,8 +81,11 @@ def _guess_size(table: ImportTable) -> None:
     elif low < ratio < high:
         mapped[key] = guess(mapped.word(key), UNCLEAR, f"but then the nearest neighbours are {ratio:.2f} times the sum of their radii apart: is it "
                             f"the {other}? Then write {other} in place of {key}")
-    elif 0.75 < ratio < 1.25 and mapped[key].certainty != UNCLEAR:
+    elif SQUEEZED < ratio < BIASED:
         mapped[key].why += f"; neighbours touch ({ratio:.2f} of the sum of radii)"
+    elif ratio > 0:
+        mapped["size_factor"] = guess(f"{ratio:.3g}", UNCLEAR, f"nearest neighbours are {ratio:.3g} times the sum of their radii apart: image "
+                                      "analysis puts surfaces too far in or out. With this factor grains touch; 1 if they do not")
 
 
 def _guess_unit_by_box(mapped: MappedTable, width: float, depth: float, known: Known) -> None:
@@ -107,14 +114,15 @@ def state_voxel_size(mapped: MappedTable, known: Known, width: float = 0) -> Non
 
 
 def _guess_origin(mapped: MappedTable, low: Floats, high: Floats, grains: GrainFrames, box: tuple[float, float]) -> None:
-    unit, margin = mapped.length_factor(), 0.12 * grains.diameter[0]  # soft grains overlap walls
+    unit, margin = mapped.length_factor(), 0.12 * float(np.median(grains.diameter))  # soft grains overlap walls
     for axis, size in enumerate([*np.divide(box, unit), np.inf] if box[0] > 0 else ()):
         begin, end = low[axis], high[axis]
         word, certainty, why = 0, UNCLEAR, f"grains reach from {begin:.4g} to {end:.4g}"
-        if begin >= -margin and end <= size + margin:
-            certainty = UNCLEAR if axis == 2 and begin > 5 * margin else "sure"
-        elif axis == 2:
-            word, why = begin, f"{why}, and the floor is not at 0"
+        if axis == 2 and abs(begin) > margin:
+            word = begin
+            why += ", and nothing is at 0: do they lie on the floor, as of an image with a margin below it? Then this is right; 0 if they do not"
+        elif begin >= -margin and end <= size + margin:
+            certainty = "sure"
         else:
             middle = (begin + end) / 2
             word, why = (0 if abs(middle) < margin else middle) - size / 2, f"{why}, the box is {size:.4g} wide"

@@ -1,15 +1,18 @@
 """Guesses units and sign of the plate's table: its position from the grains below it, its force from their forces on it."""
 import numpy as np
 
+from ..number_text import shortest
 from ..problems import Problems
 from .arrays import Floats
 from .contacts import import_contacts, wall_partner
 from .grains import GrainFrames
 from .guess_contacts import ROUGH, decide_force_unit, hertz_force
+from .guess_names import has_force, note_units
 from .guess_lengths import decide_unit, fitting_units, length_factors, state_voxel_size
 from .mapping import UNCLEAR, Known, MappedTable, guess, signed_column
-from .names import LENGTHS
-from .plate import PlateRows, import_plate
+from .names import PERCENT, RATIO_KEYS, LENGTHS, column_name, columns_by_key
+from .plate import SOLID_KEYS, PlateRows, import_plate
+from .record import guess_course
 from .rows import ImportTable, of_role
 
 
@@ -18,7 +21,8 @@ class _Plate:
 
     def __init__(self, table: ImportTable, start: float, grains: GrainFrames) -> None:
         plain = {key: guess(word, "stated", "") for key, word in (("length_unit", "m"), ("force_unit", "N"), ("force_sign", "+"))}
-        self.rows = rows = import_plate(table.changed(**plain), start if np.isfinite(start) else 0.0, Problems())
+        start = start if np.isfinite(start) else float(table.map.place in RATIO_KEYS)
+        self.rows = rows = import_plate(table.changed(**plain), start, Problems(), "time" in table.map)
         self.grains = grains
         row = rows.index.find(grains.keys) if not grains.row else np.array(grains.row, int)
         # Frames refer to the first table of the plate; a second one may be shorter.
@@ -50,9 +54,10 @@ def _first_way(z: Floats, force: Floats) -> int:
 def _guess_downwards(mapped: MappedTable, rows: PlateRows) -> None:
     """Guesses the direction: the force increases while the plate moves down. Its size alone does not tell it of a plate that sticks:
     where sizes, signs and the first move disagree, the direction must be confirmed."""
-    place, known = "displacement" if "displacement" in mapped else "plate_z", np.isfinite(rows.z + rows.force)
-    if len(rows) < 3 or mapped[place].certainty == UNCLEAR or not known.any():
+    place, known = mapped.place, np.isfinite(rows.z + rows.force)
+    if len(rows) < 3 or place in SOLID_KEYS or mapped[place].certainty == UNCLEAR or not known.any():
         return
+    known[:-1] &= ~(np.diff(rows.time) == 0)  # machines repeat a time before they start
     z, force = rows.z[known], rows.force[known]
     above, below = (np.abs(force[at]).mean() for at in (z >= z.max() - 0.2 * np.ptp(z), z <= z.min() + 0.2 * np.ptp(z)))
     first, by_size = _first_way(z, force), 1 if above > 2 * below else -1 if below > 2 * above else 0
@@ -73,7 +78,7 @@ def _guess_downwards(mapped: MappedTable, rows: PlateRows) -> None:
 def _guess_origin(mapped: MappedTable, plate: _Plate, factors: dict[str, float], unit_of_grains: str) -> None:
     """The origin of a plate below 0 is not the floor; that of a downward column that does not touch the grains at its
     lowest position may be elsewhere as well."""
-    if "plate_z" not in mapped or not np.isfinite(plate.rows.z).any():
+    if mapped.place != "plate_z" or not np.isfinite(plate.rows.z).any():
         return
     lowest = int(np.nanargmin(plate.rows.z))
     height, frames = plate.rows.z[lowest], plate.frames[plate.row == lowest]
@@ -92,10 +97,46 @@ def _units_above_floor(rows: PlateRows, start: float) -> list[str]:
     return [unit for unit, factor in sorted(LENGTHS.items(), key=lambda unit: -unit[1]) if 0 < down * factor < start]
 
 
+def _prefer_displacement(table: ImportTable, tables: list[ImportTable], known: Known) -> None:
+    """To a height as the machine counts it, where plate.start tells the height and no grains do."""
+    if table.map.place == "plate_z" and known.plate_start > 0 and not of_role(tables, "grains"):
+        if len(names := columns_by_key("plate", table.parts[0].columns).get("displacement", [])) == 1:
+            table.map.entries.pop("plate_z")
+            table.map["displacement"] = guess(names[0], "sure", "its name, and plate.start tells the height")
+            table.map.entries.pop("length_unit", None)
+            note_units(table.map)
+
+
+def _guess_ratio(mapped: MappedTable, rows: PlateRows) -> None:
+    """The unit of a strain, or of what tells the volume of the grains: a part of the volume is not above 1."""
+    key = mapped.place
+    assert rows.rows is not None
+    name, largest = column_name(signed_column(mapped.word(key))[1]).unknown.lower(), np.nanmax(np.abs(rows.rows.number(key)), initial=0)
+    most = {"strain": 1.0, "void_ratio": np.inf}.get(key, 1.5)  # estimates of a part may be above 1
+    unit = "%" if name in PERCENT or (not name and largest > most) else "1"
+    if name in PERCENT | {"-", "1", "mm/mm", "m/m"}:
+        mapped["ratio_unit"] = guess(unit, "sure", "the column's name says so")
+    else:
+        sure = unit == "%" or key != "strain" and 0.1 < largest <= 1 or key == "void_ratio"
+        mapped["ratio_unit"] = guess(unit, "sure" if sure else UNCLEAR, f"no name says it, and its values reach {largest:.4g}")
+
+
+def _guess_area(mapped: MappedTable, known: Known) -> None:
+    """What a pressure, or the volume of the grains, refers to."""
+    if known.solid_volume > 0 and mapped.place in SOLID_KEYS:
+        mapped["solid_volume"] = guess(shortest(known.solid_volume), "sure", "--mass over --solid-density")
+    if mapped.is_pressure or "solid_volume" in mapped:
+        told, area = ("--area says so", known.area) if known.area > 0 else ("the cross-section of the container", known.section)
+        mapped["area"] = guess(shortest(area), "sure", told) if area > 0 else guess("1", UNCLEAR, "--area, or the container's size, would tell")
+
+
 def _guess_height(mapped: MappedTable, plate: _Plate, start: float, factors: dict[str, float]) -> None:
     """The unit in which the plate touches the grains at its lowest position."""
     grains, fits, seen = plate.grains, [], ""
-    goes_down = "displacement" in mapped
+    goes_down = mapped.place == "displacement"
+    if mapped.place in RATIO_KEYS:
+        _guess_ratio(mapped, plate.rows)
+        return
     if np.isfinite(plate.z).any() and not (goes_down and np.isnan(start)):
         lowest = np.nanargmin(plate.z)
         z, top, first_top = plate.z[lowest], grains.top(plate.frames[lowest]), grains.top(0)
@@ -112,7 +153,10 @@ def _guess_height(mapped: MappedTable, plate: _Plate, start: float, factors: dic
         if goes_down and np.isnan(start):
             unknown = "plate.start is not known: --set plate.start=.. would tell"
         elif goes_down and (units := _units_above_floor(plate.rows, start)):
-            likely, unknown = units[0], f"{unknown}; above the floor the plate stays in {', '.join(units)}"
+            likely, unknown = "mm" if "mm" in units else units[0], f"{unknown}; above the floor the plate stays in {', '.join(units)}"
+        elif not seen and start > 0 and not goes_down and np.isfinite(plate.rows.z).any():
+            highest = float(np.nanmax(plate.rows.z))
+            fits, seen = fitting_units(LENGTHS, highest, start, 0.4, 2.5), f"at the highest the plate is at {highest:.4g}, and plate.start is {start:g} m"
         decide_unit(mapped, "length_unit", fits, seen, (fits[0] if fits else likely, seen or f"no name says it, and {unknown}"))
 
 
@@ -141,13 +185,15 @@ def _guess_force(table: ImportTable, others: list[ImportTable], plate: _Plate, k
     mapped, force = table.map, plate.rows.force[np.isfinite(plate.rows.force)]
     low, high = force.min(initial=np.inf), force.max(initial=-np.inf)
     larger, deep = "-" if abs(low) > abs(high) else "+", _sign_at_the_lowest(plate.rows)
-    clear = min(abs(low), abs(high)) < 0.3 * max(abs(low), abs(high)) and deep in ("", larger)
+    clear = (low * high >= 0 or min(abs(low), abs(high)) < 0.3 * max(abs(low), abs(high))) and deep in ("", larger)
     mapped["force_sign"] = guess(deep or larger, "sure" if clear else UNCLEAR, f"forces reach from {low:.4g} to {high:.4g}, and the grains push"
                                  + (f"; at the lowest the sign is {deep}, and the plate may stick on its way back" if not clear and deep else ""))
     ratio, truth = plate.force_ratio(_contact_forces(others, plate.grains)[plate.frames]), "of the contacts with the plate"
     by_hertz = np.isnan(ratio)
-    if by_hertz and len(plate.frames):
-        start, radius = known.plate_start if "displacement" in mapped else 0, plate.grains.diameter / 2
+    if mapped.is_pressure:
+        return
+    if by_hertz and len(plate.frames) and mapped.place not in RATIO_KEYS:
+        start, radius = known.plate_start if mapped.place == "displacement" else 0, plate.grains.diameter / 2
         tops = np.array(plate.grains.position)[plate.frames, :, 2] + radius
         overlaps = tops - (start - mapped.length_factor() * (start - plate.z))[:, None]
         ratio, truth = plate.force_ratio(hertz_force(known, radius, np.inf, overlaps).sum(axis=1)), "of Hertz from the overlaps with the plate"
@@ -162,8 +208,10 @@ def _guess_force(table: ImportTable, others: list[ImportTable], plate: _Plate, k
 
 def guess_plate_units(table: ImportTable, tables: list[ImportTable], grains: GrainFrames, known: Known) -> None:
     mapped = table.map
-    if "top_force" not in mapped or ("plate_z" not in mapped and "displacement" not in mapped):
+    if not has_force(mapped.entries.keys()) or not mapped.place:
         return
+    _guess_area(mapped, known)
+    _prefer_displacement(table, tables, known)
     plate = _Plate(table, known.plate_start, grains)
     if not len(plate.rows):
         return
@@ -176,3 +224,4 @@ def guess_plate_units(table: ImportTable, tables: list[ImportTable], grains: Gra
     _guess_height(mapped, plate, known.plate_start, factors)
     state_voxel_size(mapped, known)
     _guess_force(table, tables, plate, known)
+    guess_course(table, known, not of_role(tables, "grains") and len(of_role(tables, "plate")) == 1)

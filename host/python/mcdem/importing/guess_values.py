@@ -6,7 +6,7 @@ import numpy as np
 from .arrays import Bools, Floats, Ints
 from .grains import GrainFrames
 from .guess_lengths import nearest_over_radii
-from .mapping import UNCLEAR, MappedTable, guess
+from .mapping import PLACE_KEYS, UNCLEAR, MappedTable, guess
 from .names import column_name, columns_by_key, other_quantity
 from .rows import ImportTable
 from .tables import Table
@@ -85,13 +85,17 @@ def guess_grains_by_values(table: ImportTable) -> None:
             continue
         if not _agrees(named, c, "xyz") or named[c + 3] not in ("", "diameter", "radius"):
             continue
+        if any(column_name(name).quantity not in ("", "a length") for name in part.columns[c:c + 4]):
+            continue
         ratio = nearest_over_radii(four[:, :3], four[:, 3])
         size_key = "diameter" if 0.75 < ratio < 1.25 else "radius" if 1.5 < ratio < 2.5 else None
         if size_key:
-            mapped.role, mapped.role_certainty = "grains", "likely"
+            # Words that say nothing known may say something else.
+            certainty = UNCLEAR if part.named and not {*named[c:c + 4]} & {"x", "y", "z"} else "likely"
+            mapped.role, mapped.role_certainty = "grains", certainty
             mapped.role_why = f"columns {c + 1} to {c + 4} taken for spheres touch one another"
             for key, column in zip(("x", "y", "z", named[c + 3] or size_key), part.columns[c:]):
-                mapped[key] = guess(column, "likely", "spheres touch one another in the usual order")
+                mapped[key] = guess(column, certainty, "spheres touch one another in the usual order")
             _note_named(mapped, named, part.columns, ("grain", "frame"))
             for k in (k for k in np.flatnonzero(whole[:c]) if not named[k]):
                 different = len(np.unique(numbers[:rows, k]))
@@ -158,14 +162,12 @@ def guess_contacts_by_values(table: ImportTable, grains: GrainFrames) -> None:
 def guess_plate_by_values(table: ImportTable) -> None:
     """A few columns without names. Where a name says what a column is, the others are not guessed: a pressure is no force."""
     part, mapped = table.parts[0], table.map
-    named = {key: names for key, names in columns_by_key("plate", part.columns).items() if key in ("plate_z", "displacement", "top_force")}
+    named = {key: names for key, names in columns_by_key("plate", part.columns).items() if key in (*PLACE_KEYS, "top_force")}
     numeric = [name for name, has in zip(part.columns, _has_numbers(_numbers_of(part)[0])) if has]
     if named:
-        missing = "top_force" if "top_force" not in named else "plate_z or displacement"
+        missing = "top_force" if "top_force" not in named else " or ".join(PLACE_KEYS)
         others = [name for name in part.columns if name not in {names[0] for names in named.values()}]
         mapped.role_why = f"no column is named as {missing}, which a plate's table must have; other columns: {', '.join(others) or 'none'}"
-        if no_force := [what for name in others if (what := other_quantity(name, "force"))] if missing == "top_force" else ():
-            mapped.role_why += f"; {no_force[0]}"
         mapped.entries.update({key: guess(names[0], UNCLEAR, "its name") for key, names in named.items()})
     elif len(numeric) >= 2 and len(part.columns) <= 8:
         mapped.role_why = "no names, no grains"

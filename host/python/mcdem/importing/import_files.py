@@ -2,7 +2,7 @@
 import sys
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ..errors import InputError
 from ..look import is_there
@@ -10,7 +10,8 @@ from .assemble import Imported, import_tables
 from .guess import guess_tables, mapping_of, read_import_tables, wrong_rows
 from .mapping import KEYS, Known, MappedTable, mapping_text, unclear_entries
 from .read_mapping import parse_mapping, text_of_mapping
-from .rows import ImportTable
+from .record import picture_of
+from .rows import ImportTable, of_role
 
 LINE = 110
 
@@ -23,6 +24,7 @@ class Attempt:
     imported: Imported | None
     problems: list[str] = field(default_factory=list)
     has_wrong_rows: bool = False
+    picture: bytes | None = None  # PNG of what was understood of a testing machine's record
 
 
 def import_files(files: Sequence[str], known: Known, kept: str, given: str, settings_problems: Sequence[str]) -> Attempt:
@@ -32,22 +34,28 @@ def import_files(files: Sequence[str], known: Known, kept: str, given: str, sett
     """
     tables, text = _tables_of(files, known, kept, given)
     mapping = mapping_of(tables)
-    if files:
+    if files or known.stated:
         text = mapping_text(mapping)
     _print_mapping(mapping)
     if not given:
-        return _attempt(tables, known, text, [*unclear_entries(text, kept), *settings_problems])
+        attempt = _attempt(tables, known, text, [*unclear_entries(text, kept), *settings_problems])
+        return replace(attempt, picture=_picture(tables))
     if settings_problems:
         raise InputError(settings_problems)
     _expect_kept(kept, text)
-    return Attempt(text, import_tables(tables, known))
+    return Attempt(text, import_tables(tables, known), picture=_picture(tables))
+
+
+def _picture(tables: list[ImportTable]) -> bytes | None:
+    records = [table for table in of_role(tables, "plate") if table.map.word("course") == "stages"]
+    return picture_of(records[0]) if len(records) == 1 else None
 
 
 def _tables_of(files: Sequence[str], known: Known, kept: str, given: str) -> tuple[list[ImportTable], str]:
     """The tables, and the text of the given mapping."""
     if given:
         text = text_of_mapping(given)
-        return read_import_tables(parse_mapping(text, given), files, given), text
+        return read_import_tables(parse_mapping(text, given, known.stated), files, given), text
     if not files:
         raise InputError("TABLE: must be at least one file, or --mapping must name them, got neither")
     if is_there(kept):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..problems import to_number
 from ..toml import toml_value
-from .names import FORCES, LENGTH_WORDS, LENGTHS, VOXEL
+from .names import FORCE_WORDS, FORCES, LENGTH_WORDS, LENGTHS, PRESSURES, RATIO_KEYS, VOXEL
 from .text import Form
 
 WALLS = ["x_min", "x_max", "y_min", "y_max", "floor", "plate"]
@@ -25,7 +25,19 @@ class Known:
     youngs_modulus: float = math.nan  # of the grains [Pa]
     poisson_ratio: float = 0.4
     voxel_size: float = math.nan  # [m]
+    area: float = math.nan  # on which a pressure acts [m2]; the container's cross-section unless it is stated
+    solid_volume: float = math.nan  # of all grains [m3]
     programme: bool = False  # rows have times
+
+    @property
+    def stated(self) -> dict[str, float]:
+        """Values of the mapping that options have stated, by their keys."""
+        return {key: value for key in ("voxel_size", "area", "solid_volume") if (value := getattr(self, key)) > 0}
+
+    @property
+    def section(self) -> float:
+        """Area of the container's cross-section [m2]; 0: unknown."""
+        return self.box[0] * self.box[1] * (math.pi / 4 if self.shape == "cylinder" else 1)
 
 
 @dataclass
@@ -69,22 +81,38 @@ _FRAMES_BY = ("plate: frames have the plate's numbers, times or steps; nearest: 
 KEYS: dict[str, list[Key]] = {
     "plate": [
         Key("frame", "column", "a row's frame number, time or step; without it the rows count"),
+        Key("course", "word", "stages: the record of a testing machine, which is thinned to the moves and holds of a programme; rows: each row is a scan",
+            ("rows", "stages")),
+        Key("scans", "number", "of each move and hold, where course is stages"),
+        Key("contact", "number", "where the plate first touches, as its column counts: plate.start is the height there"),
+        Key("tare", "number", "force before it, as its column counts, which is taken off"),
         Key("cycle", "column", "compression cycle, rising; without it from the plate's turns"),
         Key("phase", "column", "load or unload (down or up, compression or decompression); without it from the plate's direction"),
         Key("plate_z", "quantity", "height of the plate; this or displacement; with a - before its name where it counts downwards"),
         Key("displacement", "quantity", "how far the plate has gone down from plate.start; with a - where it counts upwards"),
-        Key("top_force", "quantities", "force on the plate"),
+        Key("strain", "quantity", "in place of a height: compression over plate.start"),
+        Key("fraction", "quantity", "in place of a height: volume of the grains over that below the plate (relative density)"),
+        Key("void_ratio", "quantity", "in place of a height: volume of the pores over that of the grains"),
+        Key("porosity", "quantity", "in place of a height: volume of the pores over that below the plate"),
+        Key("ratio_unit", "word", "of strain, fraction, void_ratio and porosity", ("1", "%")),
+        Key("solid_volume", "number", "of all grains [m3], for fraction, void_ratio and porosity; without it plate.start is the first row's height"),
+        Key("top_force", "quantities", "force on the plate, or the pressure on it"),
+        Key("mean_stress", "quantity", "in place of a force, with deviator_stress: the pressure is their p + 2/3 q"),
+        Key("deviator_stress", "quantity", "with mean_stress"),
+        Key("area", "number", "on which a pressure acts [m2]"),
         Key("time", "column", "when the row was measured [s where the column names no unit]; needed where [[programme]] is stated"),
         Key("set_force", "quantity", "the force that was set, in rows where one was; others are empty there"),
         *_length_keys(),
         Key("origin_z", "number", "where the floor is, as plate_z's column counts; 0 where left out"),
-        Key("force_unit", "word", "", tuple(FORCES)),
+        Key("force_unit", "word", "", tuple(FORCE_WORDS)),
         Key("force_sign", "word", "+: upward force on the plate is positive; -: negative", ("+", "-")),
     ],
     "grains": [
         Key("frame", "column", "which rows belong together: frame number, time or step"),
         Key("frames_by", "word", _FRAMES_BY, ("plate", "nearest", "order", "rows")),
         Key("grain", "column", "a grain's number, alike in all frames; without it the rows of a frame count"),
+        Key("labels", "word", "kept: a grain has one number in all frames; linked: numbers count anew in each, and grains are linked by their places",
+            ("kept", "linked")),
         Key("first_grain", "number", "the number of the first row's grain, where no column has it"),
         Key("where", "column", "rows with 0 here are no grains"),
         Key("x", "quantities", "centre; of several columns the sum, such as position and displacement"),
@@ -93,6 +121,7 @@ KEYS: dict[str, list[Key]] = {
         Key("diameter", "column", "this, radius or volume"),
         Key("radius", "column", "this, diameter or volume"),
         Key("volume", "column", "this, diameter or radius: of a sphere, in cubes of length_unit"),
+        Key("size_factor", "number", "sizes are multiplied by it, 1 where left out: image analysis may see radii too small or too large"),
         Key("same_diameter", "number", "of all grains, in the table's unit, where no column has it"),
         *_length_keys(),
         Key("origin_x", "number", "where the wall x_min stands, in the table's unit, as x's column counts"),
@@ -122,6 +151,7 @@ KEYS: dict[str, list[Key]] = {
     "unused": [],
 }
 SIZE_KEYS = ("diameter", "radius", "volume")
+PLACE_KEYS = ("plate_z", "displacement", *RATIO_KEYS)  # of a plate, the first one that a table has counts
 COLUMN_KINDS = ("column", "quantity", "quantities")
 
 
@@ -136,6 +166,8 @@ class MappedTable:
     role_why: str = ""
     line: int = 0  # in the mapping
     files: list[str] = field(default_factory=list)  # with the same columns, in order of the frames
+    joined: list[str] = field(default_factory=list)  # files with more columns, each of that in `files`, by the label
+    joined_by: str = ""  # their column of labels
     unused: list[str] = field(default_factory=list)  # unused columns
     form: Form | None = None  # of text
     decimal_unclear: str = ""  # reason; empty if it is clear
@@ -165,8 +197,24 @@ class MappedTable:
         unit = self.word("length_unit", otherwise)
         return self.number("voxel_size") if unit == VOXEL else LENGTHS[unit]
 
+    @property
+    def place(self) -> str:
+        """The key that tells the plate's height; empty if there is none."""
+        return next((key for key in PLACE_KEYS if key in self), "")
+
+    @property
+    def is_topology(self) -> bool:
+        """Whether contacts have no forces."""
+        return self.role == "contacts" and not self.entries.keys() & {"force", "fx", "fy", "fz"}
+
+    @property
+    def is_pressure(self) -> bool:
+        return self.word("force_unit") in PRESSURES
+
     def force_factor(self) -> float:
-        return FORCES[self.word("force_unit", "N")]
+        """Of the table's unit in newtons."""
+        unit = self.word("force_unit", "N")
+        return float(PRESSURES[unit] * self.number("area") if unit in PRESSURES else FORCES[unit])
 
     def changed(self, **entries: Guess) -> "MappedTable":
         """A copy with other entries."""
@@ -178,8 +226,10 @@ def must_be_stated(table: MappedTable) -> list[Key]:
     keys, all_of = table.entries.keys(), {key.name: key for key in KEYS[table.role]}
     needed = {"length_unit": keys & {"plate_z", "displacement", "x", "y", "z", *SIZE_KEYS, "same_diameter"},
               "voxel_size": table.word("length_unit") == VOXEL,
-              "force_unit": keys & {"top_force", "force", "fx", "fy", "fz"},
-              "force_sign": table.role == "plate" and "top_force" in keys,
+              "ratio_unit": keys & set(RATIO_KEYS),
+              "force_unit": keys & {"top_force", "mean_stress", "force", "fx", "fy", "fz"},
+              "area": table.is_pressure or "solid_volume" in keys,
+              "force_sign": table.role == "plate" and keys & {"top_force", "mean_stress"},
               "force_on": table.role == "contacts" and keys & {"fx", "fy", "fz"}}
     return [all_of[name] for name, is_needed in needed.items() if is_needed]
 
@@ -224,6 +274,8 @@ def meaning_of(key: Key) -> str:
 def _table_text(table: MappedTable) -> str:
     text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_certainty, table.role_why), "one of " + ", ".join(KEYS))
     text += f"files = {toml_value(table.files)}\n"
+    if table.joined:
+        text += f"joined = {toml_value(table.joined)}\njoined_by = {toml_value(table.joined_by)}\n"
     if table.form:
         separator = {"\t": "tab", " ": "blanks"}.get(table.form.separator, table.form.separator)
         text += f'separator = "{separator}"\n'

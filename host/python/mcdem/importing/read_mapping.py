@@ -6,13 +6,17 @@ from .. import toml_lines
 from ..errors import InputError
 from ..files import read_whole
 from ..look import is_file, is_there
+from ..number_text import shortest
 from ..problems import Problems, quoted, to_number
 from ..toml_lines import Document, TomlError, Where
 from .mapping import BY_DIRECTION, KEYS, WALLS, Guess, Key, MappedTable, find_key, meaning_of, must_be_stated
+from .names import VOXEL
 from .text import Form
 
 LARGEST = 1_000_000  # bytes
+JOINED, JOINED_BY = Key("joined", "files"), Key("joined_by", "column")
 ROLE, FILES, WALL = Key("role", "word", "", tuple(KEYS)), Key("files", "files"), Key("a wall", "word", "", (*WALLS, BY_DIRECTION))
+POSITIVE = {"voxel_size": " [m]", "area": " [m2]", "solid_volume": " [m3]", "size_factor": ""}
 FORM_KEYS = [Key("separator", "word", "", (",", ";", "tab", "blanks")), Key("decimal", "word", "", (".", ","))]
 
 
@@ -26,16 +30,16 @@ def _problem_of(key: Key, words: list[str]) -> str | None:
         return f"must be a column without a sign, got {quoted(words[0])}"
     if key.kind == "number" and to_number(words[0]) is None:
         return f"must be a number in quotes, got {quoted(words[0])}"
-    if key.name == "voxel_size" and (to_number(words[0]) or 0) <= 0:
-        return f"must be > 0 [m], got {quoted(words[0])}"
+    if key.name in POSITIVE and (to_number(words[0]) or 0) <= 0:
+        return f"must be > 0{POSITIVE[key.name]}, got {quoted(words[0])}"
     if key.kind == "word" and words[0] not in key.words:
         return f"must be one of {' '.join(map(quoted, key.words))}, got {quoted(words[0])}"
     return None
 
 
 class _Reader:
-    def __init__(self, document: Document, file: str) -> None:
-        self.lines, self.file, self.problems = document.lines, file, Problems()
+    def __init__(self, document: Document, file: str, stated: dict[str, float]) -> None:
+        self.lines, self.file, self.stated, self.problems = document.lines, file, stated, Problems()
 
     def line_of(self, where: Where) -> int:
         """Of what is there, or of the innermost table around it."""
@@ -80,6 +84,9 @@ class _Reader:
         table.files = stated(FILES)
         if not table.files:
             self.wrong(where, "files must name at least one file, got none")
+        table.joined, table.joined_by = stated(JOINED), "".join(stated(JOINED_BY))
+        if table.joined and (len(table.joined) != len(table.files) or not table.joined_by or "grain" not in node):
+            self.wrong(where, "joined must name a file for each of files, joined_by their column of labels, and grain that of files")
         form = [stated(key) for key in FORM_KEYS]
         if any(form):
             separator, decimal = (words[0] if words else otherwise for words, otherwise in zip(form, ",."))
@@ -98,19 +105,25 @@ class _Reader:
             elif not key and table.role != "unused":
                 self.wrong((*where, name), f"{quoted(name)} must be a key of a table of {table.role}, got another: remove it, or choose "
                                            "from " + ", ".join(key.name for key in KEYS[table.role]))
+        for name, value in self.stated.items():  # by options, which replace what the mapping says
+            if table.word("length_unit") == VOXEL if name == "voxel_size" else table.role == "plate":
+                table[name] = Guess([shortest(value)])
         for key in must_be_stated(table):
-            if key.name not in node:
+            if key.name not in table and key.name not in node:
                 self.wrong(where, f"{key.name} must be stated: {meaning_of(key)}, got none")
         return table
 
 
-def parse_mapping(text: str, file: str) -> list[MappedTable]:
-    """The tables of a mapping. Raises InputError with all problems, each with its line of the file."""
+def parse_mapping(text: str, file: str, stated: dict[str, float] | None = None) -> list[MappedTable]:
+    """The tables of a mapping. `stated`: voxel_size, area and solid_volume, in SI units, that replace those of the mapping.
+
+    Raises InputError with all problems, each with its line of the file.
+    """
     try:
         document = toml_lines.parse(text)
     except TomlError as error:
         raise InputError(f"{file}:{error.line}: {error.what}") from None
-    return _Reader(document, file).read(document.root)
+    return _Reader(document, file, stated or {}).read(document.root)
 
 
 def small_file(file: str, what: str) -> bytes:

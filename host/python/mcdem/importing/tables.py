@@ -13,7 +13,7 @@ from ..problems import Problems
 from . import formats
 from .arrays import Floats
 from .boxes import Box
-from .text import Form, cut, numbers_of, parse_text
+from .text import MAX_COLUMNS, Form, cut, numbers_of, parse_text
 
 LARGEST = 1 << 30  # maximum size of a table in bytes, uncompressed
 
@@ -26,6 +26,7 @@ class Table:
         self.named, self.columns = False, list[str]()  # whether the file has names of columns; otherwise they are "column 1", ..
         self.repeated = set[str]()  # names that several columns have
         self.frames = list[tuple[float, int]]()  # of a dump: (timestep, first row)
+        self.own = MAX_COLUMNS  # columns of the file; those behind them are of another one
         self.boxes = list[Box | None]()  # of each frame, or of the file; None: not said
         self._places = dict[str, int]()  # of columns by their names
         self.line_of = list[int]()  # of each row, from 1; empty if rows are not lines
@@ -62,12 +63,18 @@ class Table:
         self.name_columns(columns, len(columns))
         self._values, self.line_of = np.where(np.isfinite(values), values, np.nan).ravel(), list(line_of)
 
+    def add_columns(self, names: Sequence[str], values: Floats) -> None:
+        """Behind the others, which `values` [rows][columns] repeat: their cells are numbers only."""
+        self.own, self._places = len(self.columns), dict[str, int]()
+        self.name_columns([*self.columns, *names], len(self.columns) + len(names))
+        self._values = values.ravel()
+
     def numbers(self, column: int) -> Floats:
         """NaN if the cell is not a finite number."""
         return np.asarray(self._values)[column::len(self.columns)]
 
     def text(self, row: int, column: int) -> str:
-        if not self.lines:
+        if not self.lines or column >= self.own:
             return shortest(self.numbers(column)[row])
         return cut(self.lines[self.line_of[row] - 1], self.form.separator)[column]
 
@@ -81,7 +88,11 @@ class Table:
 
 def _bytes_of(file: str) -> bytes:
     """The file's bytes, decompressed if necessary."""
-    if not is_file(file):
+    try:
+        there = is_file(file)
+    except OSError as error:
+        raise InputError(f"{file[:200]}: must be a table, got: {error.strerror}") from None
+    if not there:
         got = "something that is not a file" if is_there(file) else "no such file"
         raise InputError(f"{file}: must be a table, got {got}")
     try:

@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 
 SAMPLED_LINES = 100
 MAX_COLUMNS = 10_000
+BLANKS_IN_WORDS = 0.95  # merit of blanks, which are also inside of cells, as separators
 MAX_CELL = 10_000  # characters
 NOTHING = {"", "-", "--", "nan", "NaN", "NAN", "na", "NA", "N/A", "n/a", "null", "NULL", "inf"}
-UNITS = {*"- m cm mm um µm μm N cN mN kN MN uN µN μN g gf kgf lbf s ms min h % 1 voxel Pa kPa MPa bar °C C K mm/min mm/s V mV".split(), ""}
+UNITS = {*"- m cm sec psi N/mm2 N/mm² mm/mm lbf kgf mm um µm μm N cN mN kN MN uN µN μN g gf kgf lbf s ms min h % 1 voxel Pa kPa MPa bar °C C K mm/min mm/s V mV".split(), ""}
 THOUSANDS = {",": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,.*)?", re.ASCII | re.DOTALL),  # 12.345,6 with a decimal comma
              ".": re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\..*)?", re.ASCII | re.DOTALL)}
 
@@ -75,7 +76,7 @@ def _merit(lines: list[str], form: Form) -> float:
     width = _usual_width(rows)
     alike = [cells for cells in rows if len(cells) == width]
     numbers = sum(_numbers_in(cells, form.decimal) for cells in alike) / max(width, 1)
-    return (1 if width > 1 else 0.1) * len(alike) / len(lines) * (0.01 + numbers / len(alike))
+    return (1 if width > 1 else 0.1) * (BLANKS_IN_WORDS if form.separator == " " else 1) * len(alike) / len(lines) * (0.01 + numbers / len(alike))
 
 
 def guess_form(lines: list[str]) -> Form:
