@@ -196,6 +196,14 @@ void bind_scene(py::module_& module) {
             return std::string(key->unit);
         },
         py::arg("key"));
+    module.def(
+        "key_range",
+        [](const std::string& name) -> py::object {
+            const Key* key = find_key(name);
+            if (!key || !std::holds_alternative<MemberOf<double>>(key->member)) return py::none();
+            return py::make_tuple(key->range.low, key->range.high, key->range.low_end == Range::Low::excluded);
+        },
+        py::arg("key"));
     module.def("expect_plain_strokes", &expect_plain_strokes, py::arg("scene"), py::arg("what"),
                "Refuses cells, species and programmes, which `what` does not support.");
     module.def(
