@@ -7,7 +7,7 @@ from ..json_text import finite
 from ..look import Path
 from ..observe.reference import reference_setting
 from ..warn import warn_user
-from .scene_fit import FitOptions, SceneFit, direction_words, fit_scene
+from .scene_fit import FitOptions, SceneFit, fit_scene
 from .scene_calibration import Options, SceneCalibration, calibrate_scene, calibrated_model
 from .search import SearchOptions
 
@@ -63,7 +63,7 @@ def fit_document(fit: SceneFit, scene: str, reference: str) -> dict[str, Any]:
         "keys": {key.name: {"value": value, "unit": key.unit, "scene": key.value, "standard_error": errors[key.name],
                             "standard_error_of_fit": of_fit[key.name], "at_limit": bool(limit)}
                  for key, value, limit in zip(fit.keys, fit.values.tolist(), fit.at_limit, strict=True)},
-        "correlation": fit.correlation.tolist(), "not_determined": [direction_words(fit, one)[0] for one in fit.undetermined],
+        "correlation": fit.correlation.tolist(), "not_determined": [[name for name, _ in group] for group in fit.undetermined],
         "differences": {one.quantity: {"unit": one.unit, "before": one.before, "after": one.after, "expected": one.expected}
                         for one in fit.differences},
         "Rtop": list(fit.ratio), "notes": list(fit.notes), "set": fit.assignments, "target_top_force_N": fit.target,

@@ -57,7 +57,6 @@ class Minimum:
     slope: Floats  # (N, p) of the data with the keys, there
     gain: Floats  # (p, N) shift of the minimum with the data
     covariance: Floats  # (p, p) of x, from the scatter of the trials about the polynomial; NaN with too few trials
-    slope_noise: Floats  # (p, p) what that scatter adds to slope' slope, differences over sigma
     at_edge: Bools  # (p,) of the window
     trials: int  # number that the polynomial rests on
 
@@ -128,7 +127,7 @@ class Fit:
         self.x, self.y = np.zeros((0, self._keys)), np.zeros((0, len(target.value)))  # trials that did not stop early
         self.failed = np.zeros((0, self._keys))
         self._centre, self._half = (ranges.first_high + ranges.first_low) / 2, (ranges.first_high - ranges.first_low) / 2
-        self._least_half = self._half / 4
+        self._least_half = self._half.copy()
         self._has_window = self._keys > 1
         self._bests = list[float]()  # least misfit after each round
         self.minimum: Minimum | None = None
@@ -250,6 +249,13 @@ class Fit:
         self._half = np.where(is_open, np.minimum(2 * self._half, self._ranges.high - self._ranges.low), np.maximum(self._half / 2, least))
         self.values = self._star(found.x)
 
+    def slopes(self) -> tuple[Floats, Floats]:
+        """(p, p) square of the data's slopes over sigma with the keys, on average over all trials, and what the scatter adds to it."""
+        polynomial, middle = Polynomial(self.x, self.y, self.x.mean(0), self._half), self.x.mean(0)
+        slope = polynomial.slope(middle) / self._target.sigma[:, None]
+        scatter = np.nan_to_num(np.diag(polynomial.scatter) / self._target.sigma**2)
+        return slope.T @ slope, polynomial.slope_leverage(middle) * float(scatter.sum())
+
     def _minimise(self, chosen: Bools) -> Minimum:
         """Of the polynomial through the chosen trials, in the window."""
         polynomial = Polynomial(self.x[chosen], self.y[chosen], self._centre, self._half)
@@ -267,7 +273,6 @@ class Fit:
                               xtol=1e-14, ftol=1e-14, gtol=1e-14)
         x, slope = np.asarray(found.x), polynomial.slope(found.x)
         gain = np.linalg.pinv(slope * scale / sigma[:, None]) * scale[:, None] / sigma
-        noise = polynomial.slope_leverage(x) * float((np.diag(polynomial.scatter) / sigma**2).sum())
         covariance = polynomial.leverage(x) * gain @ polynomial.scatter @ gain.T
         at_edge = np.minimum(x - (self._centre - scale), self._centre + scale - x) < 1e-3 * scale
-        return Minimum(x, slope, gain, covariance, noise, at_edge, int(chosen.sum()))
+        return Minimum(x, slope, gain, covariance, at_edge, int(chosen.sum()))

@@ -1,7 +1,6 @@
 """Keys of a scene that a fit moves: limits and units from the reference of keys, natural steps from the library of effects."""
 import difflib
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ from ..diagnosis.model import Model
 from ..errors import InputError
 from ..experiment.instrument import Instrument
 from ..problems import to_number
+from ..results.parameters import has_programme
 
 if TYPE_CHECKING:
     from .._engine import Scene
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 OFFSET = "strain_offset"  # as in a diagnosis: plate positions are read too high by this [m]
 DIAMETERS = "effects.diameter_error"
 NO_DATA = ("protocol.", "numerics.", "output.", "plate.", "programme.")  # how a scene is simulated and recorded
-STEP, FACTOR = 0.15, 3.0  # of a value that no effect changes: first step, and first range if it moves alone
-OFFSET_STEP, OFFSET_RANGE = 0.02, 0.1  # over the mean diameter
+STEP, FACTOR = 0.15, 2.0  # of a value that no effect changes: first step, and first range if it moves alone
+OFFSET_STEP, OFFSET_RANGE = 0.05, 0.1  # over the mean diameter
 LEAST_PART = 1e-3  # of the scene's value, where the limit 0 is excluded
 SIMILAR = 0.6  # of names that a user may have meant
 
@@ -39,13 +39,6 @@ class FitKey:
     range_high: float
     scale: float  # of relative changes
     scale_words: str = ""  # empty: the scene's value
-
-    def changes(self, value: float, scene: Mapping[str, Any]) -> dict[str, float]:
-        """The keys to change of a scene with these parameters; OFFSET is that of all positions of the plate."""
-        if self.name != OFFSET:
-            return {self.name: value}
-        positions = [key for key in scene if key in ("plate.start", "plate.end") or re.fullmatch(r"programme\.\d+\.position", key)]
-        return {key: scene[key] - value for key in positions if isinstance(scene[key], (int, float))}
 
     def relative(self, value: float) -> float:
         """Change over the scale; NaN without one."""
@@ -77,7 +70,9 @@ def _ends(word: str, text: str) -> tuple[float, float]:
 
 def _fit_key(name: str, ends: tuple[float, float] | None, scene: "Scene", steps: Mapping[str, Sequence[float]], diameter: float) -> FitKey:
     parameters: Mapping[str, Any] = scene.parameters[0]
-    if name == OFFSET and parameters["container.shape"] != "cell":
+    if name == OFFSET:
+        if parameters["container.shape"] == "cell" or has_programme(parameters):
+            raise InputError(f"{OFFSET}: must be that of a plate with strokes, got a cell or a programme")
         step, width = OFFSET_STEP * diameter, OFFSET_RANGE * diameter
         key = FitKey(OFFSET, "m", 0.0, -diameter, diameter, -step, step, -width, width, diameter, "mean diameter")
         return _within(key, ends) if ends else key
@@ -136,6 +131,15 @@ def _effect_steps(scene: "Scene", mean_diameter: float) -> dict[str, tuple[float
             step = max(abs(first), abs(second) / 2)
             found.setdefault(name, (-step, step, low, high))
     return found
+
+
+def scene_changes(values: Mapping[str, float], parameters: Mapping[str, Any]) -> dict[str, float]:
+    """The keys of a scene with these parameters to change. A plate that is read too high ends lower; one that is read too low also starts
+    higher, so that there are scans from the first displacement on."""
+    changes = {name: value for name, value in values.items() if name != OFFSET}
+    if offset := values.get(OFFSET, 0.0):
+        changes |= {"plate.end": parameters["plate.end"] - offset, "plate.start": parameters["plate.start"] + max(0.0, -offset)}
+    return changes
 
 
 def _suggestion(name: str, parameters: Mapping[str, Any]) -> str:

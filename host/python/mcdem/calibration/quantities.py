@@ -16,6 +16,7 @@ from ..results.names import Phase
 from ..results.recording import Floats
 
 MM = 1e-3
+BEGUN = 0.01  # over the stroke: before it the plate need not have a scan in the simulation
 FLOOR = 0.02  # over the largest value: differences that count as one sigma, where packings do not scatter more
 PLATE, CELL = ("top_force", "displacement", "coordination"), ("p", "q", "volume_strain", "shear_strain", "coordination")  # of programmes
 UNITS = {"force": "N", "unloading_force": "N", "top_force": "N", "displacement": "m", "p": "Pa", "q": "Pa"}
@@ -69,7 +70,8 @@ def curves(reference: Replicas, wanted: Sequence[str] = ()) -> Quantities:
 
 
 def _of_levels(reference: Replicas) -> list[Quantity]:
-    levels = group_levels(reference)
+    stroke = stroke_of(reference)
+    levels = [level for level in group_levels(reference) if level.displacement > BEGUN * stroke]
     force = at_levels("force", levels, lambda _, theirs: by_replica(theirs, top_force))
     if not levels:
         return [force]
@@ -145,8 +147,16 @@ def stroke_of(reference: Replicas) -> float:
 def sigma_of(quantities: Quantities, reference: Floats) -> Floats:
     """(values,) what counts as one standard deviation: the scatter between the reference's replicas, and FLOOR of the largest value of each
     quantity."""
-    count = len(reference)
-    scatter = reference.var(0, ddof=1) / count if count > 1 else np.zeros(reference.shape[1])
+    scatter = variance_of_mean(reference)
     floor = np.concatenate([np.full(len(one.place), FLOOR * max(float(np.nanmax(np.abs(reference[:, columns]))), 1e-300))
                             for one, columns in zip(quantities.each, quantities.columns, strict=True)])
-    return np.asarray(np.sqrt(scatter + floor**2))
+    return np.asarray(np.sqrt(np.nan_to_num(scatter) + floor**2))
+
+
+def variance_of_mean(data: Floats) -> Floats:
+    """(values,) of the mean over replicas (replicas, values) that have the value; NaN with fewer than two."""
+    known = np.isfinite(data)
+    count = known.sum(0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rest = np.where(known, data - np.where(known, data, 0).sum(0) / count, 0)
+        return np.asarray((rest**2).sum(0) / (count - 1) / count)

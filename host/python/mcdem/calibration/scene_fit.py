@@ -13,8 +13,8 @@ from ..observe.replicas import MODEL, SEED, THRESHOLD, Replicas, seeds_of
 from ..results.parameters import has_programme, keys_that_vary
 from ..results.recording import Bools, Floats
 from .fit import End, Fit, Minimum, Ranges, Target
-from .keys import STEP, FitKey, fit_keys
-from .quantities import Quantities, curves, sigma_of, single, stroke_of
+from .keys import STEP, FitKey, fit_keys, scene_changes
+from .quantities import Quantities, curves, sigma_of, single, stroke_of, variance_of_mean
 from .scene_calibration import calibrated_model, check_stroke
 from .trials import Trials, mean_data
 
@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 
 VARIES = ("packing.", "container.", "box.")  # what may differ between replicas
 UNDETERMINED = 0.5  # standard error, over ten thirds of the first step (for most keys: over their value)
-NOISE = 4.0  # a slope counts if its square is this much larger than what the scatter of the trials makes of it
-SHARE = 0.3  # of a key in a direction of length 1, from which it belongs to it
+LEAST_CHANGE = 4.0  # of the data by that much of a key, sum of squares over sigma: less determines nothing
+SETTLED = 0.5  # of the errors: a fit of which no round moves a key more has ended, because of the scatter between packings
+SHARE = 0.3  # of a key's effect on the data over the largest, from which it belongs to a combination
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class SceneFit:
     standard_error_of_fit: Floats  # (p,) from the scatter of the trials alone
     correlation: Floats  # (p, p)
     at_limit: Bools  # (p,)
-    undetermined: Sequence[Floats]  # directions (p,) along which the data hardly change
+    undetermined: Sequence[Sequence[tuple[str, float]]]  # keys that hardly change the data if they move together by these amounts, or one alone
     rounds: Sequence[FitRound]
     differences: Sequence[Difference]
     ratio: tuple[float, float]  # Rtop before and after; NaN for programmes
@@ -85,10 +86,11 @@ def fit_scene(scene: "Scene", reference: Replicas, options: FitOptions, progress
     fit_keys(options.keys, prepared, 1.0)  # errors before packings are made
     fitted = curves(reference, options.compared)
     work = _Work(Trials(prepared, options.device, options.folder), prepared, reference, fitted, options)
-    while len(work.rounds) < options.rounds and work.fit.end is None:
-        work.round(lambda part: progress((len(work.rounds) + part) / options.rounds))
-        after_round(work.result())
-    return work.result()
+    found = None
+    while found is None or (len(found.rounds) < options.rounds and found.end is None):
+        found = work.round(lambda part: progress((len(work.rounds) + part) / options.rounds))
+        after_round(found)
+    return found
 
 
 def _prepared(scene: "Scene", reference: Replicas, options: FitOptions) -> "Scene":
@@ -107,6 +109,8 @@ def _prepared(scene: "Scene", reference: Replicas, options: FitOptions) -> "Scen
     changes: dict[str, Any] = {"output.positions": False, "output.contacts": False} | ({MODEL: model} if model else {})
     if isinstance(threshold, (int, float)):
         changes[THRESHOLD] = threshold
+    if not programmes[0]:
+        changes["protocol.scan_at_start"] = True  # levels between the first displacement and the next scan are known, too
     return scene.parse(scene.text, set=changes)
 
 
@@ -138,7 +142,7 @@ class _Work:
         limits = [np.array([getattr(key, end) for key in self.keys]) for end in ("low", "high")]
         return Fit(self._target, Ranges(limits[0], limits[1], columns[0], columns[1], self._options.tolerance * self._scale), self._options.batch)
 
-    def round(self, progress: Callable[[float], object]) -> None:
+    def round(self, progress: Callable[[float], object]) -> SceneFit:
         """Raises InputError if the scene's own simulations stop before the first value that is compared."""
         x = self.fit.values
         if not self.rounds:  # the scene's own values come first
@@ -154,10 +158,14 @@ class _Work:
         found = self.fit.minimum
         self.rounds.append(FitRound(x, self._target.misfit(y), found.x if found else self.fit.x[self.fit.best],
                                     found.standard_error if found else np.full(len(self.keys), math.nan)))
+        if len(self.rounds) > 1 and self.fit.end is None:
+            result, moved = self.result(), np.abs(self.rounds[-1].values - self.rounds[-2].values)
+            if (np.fmax(moved, result.standard_error_of_fit) <= SETTLED * result.standard_error).all():
+                self.fit.end = End.converged
+        return self.result()
 
     def _changes(self, values: Floats) -> dict[str, float]:
-        return {name: value for key, one in zip(self.keys, values.tolist(), strict=True)
-                for name, value in key.changes(one, self._parameters).items()}
+        return dict(zip((key.name for key in self.keys), values.tolist(), strict=True))
 
     def _leave_out(self) -> None:
         """Values that the scene's own simulations do not reach."""
@@ -189,9 +197,9 @@ class _Work:
         tops = [mean_data(self._data[x])[-1] / self._mean[-1] if len(self._all) > len(self._fitted) else math.nan
                 for x in (tuple(self._start.tolist()), near)]
         return SceneFit(self.keys, values, error, found.standard_error if found else np.diag(unknown), correlation, at_limit,
-                        self._undetermined(found, covariance) if found else [], tuple(self.rounds), self._differences(near), (tops[0], tops[1]),
+                        self._undetermined(covariance) if found else [], tuple(self.rounds), self._differences(near), (tops[0], tops[1]),
                         self.fit.end, self._trials.packings, [*self.notes, *notes],
-                        [f"{name}={value:.6g}" for name, value in self._changes(values).items()],
+                        [f"{name}={value:.6g}" for name, value in scene_changes(self._changes(values), self._parameters).items()],
                         float(self._mean[-1]) if len(self._all) > len(self._fitted) else math.nan)
 
     def _packing_covariance(self, data: Floats, found: Minimum) -> tuple[Floats, list[str]]:
@@ -211,14 +219,21 @@ class _Work:
             return of_theirs * (1 + their_count), []
         return (of_ours + of_theirs if their_count > 1 else of_ours * (1 + count)), []
 
-    def _undetermined(self, found: Minimum, covariance: Floats) -> list[Floats]:
-        """Directions of the keys over their scales."""
-        slope = found.slope * self._scale / self._target.sigma[:, None]
-        noise = np.nan_to_num(found.slope_noise * np.outer(self._scale, self._scale))
-        size, directions = np.linalg.eigh(slope.T @ slope)
-        scaled = np.nan_to_num(covariance / np.outer(self._scale, self._scale))
-        return [v * np.sign(v[np.argmax(np.abs(v))]) for squared, v in zip(size, directions.T, strict=True)
-                if squared < max(1.0, NOISE * float(v @ noise @ v)) or float(v @ scaled @ v) > UNDETERMINED**2]
+    def _undetermined(self, covariance: Floats) -> list[list[tuple[str, float]]]:
+        weight, noise = (one * np.outer(self._scale, self._scale) for one in self.fit.slopes())
+        is_alone = np.diag(weight) < np.fmax(LEAST_CHANGE, np.diag(noise))  # the key changes nothing
+        groups = [[(key.name, math.nan)] for key, alone in zip(self.keys, is_alone, strict=True) if alone]
+        others = np.flatnonzero(~is_alone)
+        of_others = np.ix_(others, others)
+        scaled = np.nan_to_num(covariance / np.outer(self._scale, self._scale))[of_others]
+        sizes, directions = np.linalg.eigh(weight[of_others])
+        for size, v in zip(sizes, directions.T, strict=True):
+            if size < max(LEAST_CHANGE, float(v @ noise[of_others] @ v)) or float(v @ scaled @ v) > UNDETERMINED**2:
+                effect = np.abs(v) * np.sqrt(np.diag(weight)[others])  # of each key on the data, which cancel each other
+                members = [k for k in np.argsort(-effect).tolist() if effect[k] >= SHARE * effect.max()]
+                step = 0.1 * v / v[members[0]]
+                groups.append([(self.keys[others[k]].name, float(step[k] * self._scale[others[k]])) for k in members])
+        return groups
 
     def _differences(self, near: tuple[float, ...]) -> list[Difference]:
         def rms(values: Floats) -> float:
@@ -230,8 +245,7 @@ class _Work:
             if not len(kept):
                 continue
             before, after = (mean_data(self._data[x])[kept] - self._mean[kept] for x in (tuple(self._start.tolist()), near))
-            variances = [data[:, kept].var(0, ddof=1) / len(data) for data in (self._data[near], self._measured) if len(data) > 1]
-            expected = rms(np.sqrt(sum(variances))) if len(variances) == 2 else math.nan
+            expected = rms(np.sqrt(variance_of_mean(self._data[near][:, kept]) + variance_of_mean(self._measured[:, kept])))
             found.append(Difference(one.name, one.unit, rms(before), rms(after), expected))
         return found
 
@@ -244,10 +258,3 @@ def _scatter(data: Floats, found: Minimum) -> tuple[Floats, int]:
         return np.zeros((len(found.x),) * 2), count
     shifts = shifts - shifts.mean(0)
     return shifts.T @ shifts / (count * (count - 1)), count
-
-
-def direction_words(fit: SceneFit, direction: Floats) -> tuple[list[str], str]:
-    """Names of the keys of an undetermined direction, and how they move along it, the first of them by 10 % of its scale."""
-    keys = [k for k in np.argsort(-np.abs(direction)).tolist() if abs(direction[k]) >= SHARE]
-    steps = 0.1 * direction / direction[keys[0]] * np.array([(key.step_high - key.step_low) / (2 * STEP) for key in fit.keys])
-    return [fit.keys[k].name for k in keys], " and ".join(f"{fit.keys[k].name} by {steps[k]:+.2g} {fit.keys[k].unit}".rstrip() for k in keys)

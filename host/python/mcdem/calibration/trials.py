@@ -2,7 +2,8 @@
 import hashlib
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,13 +12,14 @@ from ..diagnosis.trials import ObservationStore
 from ..look import Path
 from ..results.engine_run import run_of
 from ..results.recording import Floats
+from .keys import OFFSET, scene_changes
 from .quantities import Quantities
 
 if TYPE_CHECKING:
     from .._engine import Batch
 
 ALL_SCANS = 1 << 31
-Changes = Mapping[str, float]  # of keys of the scene
+Changes = Mapping[str, float]  # values of keys, or of OFFSET
 Part = Callable[[float], object]  # is told the fraction of a round that is done
 
 
@@ -27,6 +29,7 @@ class Trials:
     def __init__(self, scene: "_engine.Scene", device: str, folder: Path | None = None) -> None:
         """`folder`: where data are kept, so that an interrupted fit continues."""
         self.batch: Batch = _engine.Batch(scene, device)
+        self._parameters: Mapping[str, Any] = scene.parameters[0]
         self._store = ObservationStore(folder) if folder is not None else None
         self._facts = repr(sorted(_engine.manifest_of(scene).items())) + self.batch.device_name if self._store else ""
         self._known = dict[str, Floats]()
@@ -41,9 +44,12 @@ class Trials:
         names = [hashlib.sha256(repr((self._facts, sorted(one.items()), scans, quantities.facts())).encode()).hexdigest() for one in changes]
         missing = {name: one for name, one in zip(names, changes, strict=True) if not self._find(name, quantities)}
         if missing:
-            run = run_of(self.batch.simulate(list(missing.values()), scans, progress)).recordings
-            for k, name in enumerate(missing):
-                self._keep(name, quantities.of(run[k * self.packings:][:self.packings]))
+            wanted = [scene_changes(one, self._parameters) for one in missing.values()]
+            run = run_of(self.batch.simulate(wanted, scans, progress)).recordings
+            for k, (name, values) in enumerate(missing.items()):
+                read_from = self._parameters["plate.start"] - values.get(OFFSET, 0.0)
+                self._keep(name, quantities.of([replace(one, plate_start=read_from) if OFFSET in values else one
+                                                for one in run[k * self.packings:][:self.packings]]))
         return np.array([self._known[name] for name in names])
 
     def _find(self, name: str, quantities: Quantities) -> bool:

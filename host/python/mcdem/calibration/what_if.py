@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 
 KEYS = ("grains.youngs_modulus", "contact.gamma", "grains.poisson_ratio", "grains.friction", "walls.friction", DIAMETERS, OFFSET)  # by default
 HALVES = 0.5, 1.0  # of the stroke, where by default the force and Z are shown
-BATCH = 5  # first values of each key, besides the scene's
-AROUND = 0.1  # later trials on either side of the estimate, over the half width of the window
+BATCH = 3  # values of a key in the first round, besides the scene's; later it is one
 LEVELS = 30  # of the curves
 
 
@@ -126,7 +125,7 @@ class _Work:
     def round(self, progress: Callable[[float], object]) -> None:
         """All keys' trials in one batch."""
         wanted = [(k, value) for k in self.open() for value in self._values(k)]
-        changes = [self._keys[k].changes(value, self._parameters) if value != self._keys[k].value else {} for k, value in wanted]
+        changes = [{self._keys[k].name: value} if value != self._keys[k].value else {} for k, value in wanted]
         data = self.trials.data(changes, self._all, self._scans(), progress)
         for k in self.open():
             rows = [row for row, (owner, _) in enumerate(wanted) if owner == k]
@@ -137,14 +136,13 @@ class _Work:
         self.rounds += 1
 
     def _values(self, k: int) -> list[float]:
-        """Of a key: the scene's and others in its range, later three around the estimate."""
+        """Of a key: the scene's and others in its range, later the estimate."""
         fit, key = self._fits[k], self._keys[k]
         if not self.rounds:
             return [key.value, *(value for value in fit.values[:, 0].tolist() if value != key.value)]
         if not fit.minimum:
             return list(fit.values[:, 0].tolist())
-        aside = AROUND * float(np.ptp(fit.values)) / 2
-        return list(np.clip(float(fit.minimum.x[0]) + np.array([-aside, 0.0, aside]), key.low, key.high).tolist())
+        return [float(fit.minimum.x[0])]
 
     def _scans(self) -> int:
         """Without the last unloading, if no quantity needs it."""
@@ -160,7 +158,7 @@ class _Work:
 
     def _is_met(self, k: int) -> bool:
         found = self._data[k].get(self._best(k))
-        return found is not None and abs(found[0] - self._value) <= self._options.accuracy * abs(self._value)
+        return found is not None and bool(abs(found[0] - self._value) <= self._options.accuracy * abs(self._value))
 
     def _measured_curve(self) -> tuple[Floats, Floats] | None:
         """Of the experiment while loading."""

@@ -5,13 +5,15 @@ from .style import GREY, INK, PAGE, key, line, new_axes, plain, styled
 from .values import Source, read
 
 
+TICKS = -100, -10, -1, 0, 1, 10, 100, 1000
+
 
 @styled
 def what_if(source: Source, axes: Any = None) -> Any:
     """Left: the target quantity over the change of each key; line: the target, large marker: where it is met (open: nearest to it).
     Right: the force on the plate of the scene and of each of these, with the experiment."""
     values = read(source, "what_if")
-    axes = new_axes(PAGE, 66 + 3.4 * (len(values["series"]) // 2), ncols=2) if axes is None else axes
+    axes = new_axes(PAGE, 64 + 3.2 * (len(values["series"]) // 3 + 1), ncols=2) if axes is None else axes
     left, right = axes
     left.axhline(values["target"], color=GREY, linewidth=0.7, linestyle=":")
     right.plot(values["displacement"], _numbers(values["scene_force"]), color=GREY, linestyle="--")
@@ -32,9 +34,12 @@ def what_if(source: Source, axes: Any = None) -> Any:
         right.plot(values["displacement"][-1], values["top_force"], color=INK, marker="o", markersize=4, linestyle="", clip_on=False)
         entries.append((line(color=INK, marker="o", linestyle=""), "target"))
     left.set(xlabel=values["x_label"], ylabel=plain(values["y_label"]))
-    left.set_xscale("symlog", linthresh=5)
+    left.set_xscale("symlog", linthresh=1)
+    shown = [tick for tick in TICKS if left.get_xlim()[0] <= tick <= left.get_xlim()[1]]
+    left.set_xticks(shown, [f"{tick:+}" if tick else "0" for tick in shown])
+    left.minorticks_off()
     right.set(xlabel="plate displacement [mm]", ylabel="force on the plate [N]", ylim=(0, None))
-    key(right, entries, None)
+    key(left, entries, "upper left", bbox_to_anchor=(-0.1, -0.17), ncol=3, columnspacing=1.2)
     return axes
 
 

@@ -4,7 +4,7 @@ from itertools import combinations
 
 from ..calibration.fit import End
 from ..calibration.keys import FitKey
-from ..calibration.scene_fit import FitRound, SceneFit, direction_words
+from ..calibration.scene_fit import FitRound, SceneFit
 from .labels import number
 from .text_table import table_of, to_text
 
@@ -41,7 +41,8 @@ def round_text(fit: SceneFit) -> str:
 
 
 def fit_text(fit: SceneFit) -> str:
-    rows = [[key.name, value_text(key, value, error), value_text(key, key.value), change_text(key, value)]
+    vague = {name for group in fit.undetermined for name, _ in group}
+    rows = [[key.name, value_text(key, value, error) if key.name not in vague else value_text(key, value) + ", not determined", value_text(key, key.value), change_text(key, value)]
             for key, value, error in zip(fit.keys, fit.values.tolist(), fit.standard_error.tolist(), strict=True)]
     lines = [to_text(table_of(["<key", "value", "scene", "change"], rows))]
     rows = [[WORDS.get(one.quantity, one.quantity) + (f" [{one.unit}]" if one.unit else ""), number(one.before), number(one.after),
@@ -55,10 +56,14 @@ def fit_text(fit: SceneFit) -> str:
 
 def _sentences(fit: SceneFit) -> list[str]:
     lines = []
-    for direction in fit.undetermined:
-        names, move = direction_words(fit, direction)
-        lines.append(f"the data do not determine {names[0]}" if len(names) == 1 else
-                     f"the data do not determine {' and '.join(names)} separately: if they move together, {move}, the data hardly change")
+    for group in fit.undetermined:
+        names = " and ".join(name for name, _ in group)
+        if len(group) == 1:
+            lines.append(f"the data do not determine {names}")
+        else:
+            units = {key.name: key.unit for key in fit.keys}
+            moved = ", ".join(f"{name} by {step:+.2g} {units[name]}".rstrip() for name, step in group)
+            lines.append(f"the data do not determine {names} separately: if they move together ({moved}), the data hardly change")
     for i, j in combinations(range(len(fit.keys)), 2):
         if abs(fit.correlation[i, j]) >= CORRELATED and not fit.undetermined:
             lines.append(f"{fit.keys[i].name} and {fit.keys[j].name} are correlated by {fit.correlation[i, j]:+.2f}: their errors are "
