@@ -69,11 +69,11 @@ class Minimum:
 class Polynomial:
     """Least squares of first order, with squares and with products as far as there are trials for them."""
 
-    def __init__(self, x: Floats, y: Floats, centre: Floats, half: Floats) -> None:
-        """`x` (n, p), `y` (n, N)"""
+    def __init__(self, x: Floats, y: Floats, centre: Floats, half: Floats, for_squares: int = POINTS_FOR_AN_ERROR) -> None:
+        """`x` (n, p), `y` (n, N); `for_squares`: number of trials of one key alone from which the square counts."""
         count, keys = x.shape
         self._centre, self._half = centre, half
-        needed = {"squares": POINTS_FOR_AN_ERROR if keys == 1 else 2 * keys + 1, "products": 2 * keys + 3 + keys * (keys - 1) // 2}
+        needed = {"squares": for_squares if keys == 1 else 2 * keys + 1, "products": 2 * keys + 3 + keys * (keys - 1) // 2}
         self._squares = count >= needed["squares"]
         self._pairs = list(combinations(range(keys), 2)) if count >= needed["products"] else []
         terms = self._terms(x)
@@ -120,9 +120,10 @@ class Polynomial:
 class Fit:
     """Asks for trials of `values`, and is told their data; until `end`, or as long as rounds are left."""
 
-    def __init__(self, target: Target, ranges: Ranges, batch: int) -> None:
-        """`batch`: number of values in a round of one key; several keys take one at the centre and two for each."""
-        self._target, self._ranges, self._batch = target, ranges, batch
+    def __init__(self, target: Target, ranges: Ranges, batch: int, for_squares: int = POINTS_FOR_AN_ERROR) -> None:
+        """`batch`: number of values in a round of one key; several keys take one at the centre and two for each. `for_squares`: as of
+        Polynomial."""
+        self._target, self._ranges, self._batch, self._for_squares = target, ranges, batch, for_squares
         self._keys = len(ranges.low)
         self.x, self.y = np.zeros((0, self._keys)), np.zeros((0, len(target.value)))  # trials that did not stop early
         self.failed = np.zeros((0, self._keys))
@@ -254,11 +255,11 @@ class Fit:
         polynomial, middle = Polynomial(self.x, self.y, self.x.mean(0), self._half), self.x.mean(0)
         slope = polynomial.slope(middle) / self._target.sigma[:, None]
         scatter = np.nan_to_num(np.diag(polynomial.scatter) / self._target.sigma**2)
-        return slope.T @ slope, polynomial.slope_leverage(middle) * float(scatter.sum())
+        return np.asarray(slope.T @ slope, float), np.asarray(polynomial.slope_leverage(middle) * float(scatter.sum()), float)
 
     def _minimise(self, chosen: Bools) -> Minimum:
         """Of the polynomial through the chosen trials, in the window."""
-        polynomial = Polynomial(self.x[chosen], self.y[chosen], self._centre, self._half)
+        polynomial = Polynomial(self.x[chosen], self.y[chosen], self._centre, self._half, self._for_squares)
         low, high = np.maximum(self._centre - self._half, self._ranges.low), np.minimum(self._centre + self._half, self._ranges.high)
         hold, sigma, scale = (math.sqrt(HOLD) if self._keys > 1 else 0.0), self._target.sigma, self._half
 

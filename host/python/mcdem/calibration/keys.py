@@ -27,7 +27,7 @@ SIMILAR = 0.6  # of names that a user may have meant
 
 @dataclass(frozen=True)
 class FitKey:
-    """A key, or OFFSET."""
+    """A key, or OFFSET, or several that keep their ratios (KEY+KEY); the numbers are those of the first."""
     name: str
     unit: str
     value: float  # of the scene
@@ -39,6 +39,11 @@ class FitKey:
     range_high: float
     scale: float  # of relative changes
     scale_words: str = ""  # empty: the scene's value
+    ratios: tuple[float, ...] = (1.0,)  # of the keys to the first
+
+    def values(self, value: float) -> dict[str, float]:
+        """Of each key, where that of the first is `value`."""
+        return {name: value * ratio for name, ratio in zip(self.name.split("+"), self.ratios, strict=True)}
 
     def relative(self, value: float) -> float:
         """Change over the scale; NaN without one."""
@@ -46,19 +51,28 @@ class FitKey:
 
 
 def fit_keys(words: Sequence[str], scene: "Scene", mean_diameter: float) -> list[FitKey]:
-    """Of KEY or KEY=LOW..HIGH. `mean_diameter` of the grains [m]. Raises InputError with all problems."""
+    """Of KEY, KEY=LOW..HIGH or KEY+KEY. `mean_diameter` of the grains [m]. Raises InputError with all problems."""
     found, problems, steps = list[FitKey](), list[str](), _effect_steps(scene, mean_diameter)
     for word in words:
         name, equals, ends = word.partition("=")
         try:
             if any(one.name == name for one in found):
                 raise InputError(f"{name}: must be given once")
-            found.append(_fit_key(name, _ends(word, ends) if equals else None, scene, steps, mean_diameter))
+            together = [_fit_key(key, _ends(word, ends) if equals else None, scene, steps, mean_diameter) for key in name.split("+")]
+            found.append(_together(together) if len(together) > 1 else together[0])
         except InputError as error:
             problems += error.problems
     if problems:
         raise InputError(problems)
     return found
+
+
+def _together(keys: Sequence[FitKey]) -> FitKey:
+    first = keys[0]
+    if not all(key.value for key in keys):
+        raise InputError(f"{'+'.join(key.name for key in keys)}: keys that move together must not be 0 in the scene, because they keep their "
+                         "ratios")
+    return replace(first, name="+".join(key.name for key in keys), ratios=tuple(key.value / first.value for key in keys))
 
 
 def _ends(word: str, text: str) -> tuple[float, float]:
@@ -144,4 +158,4 @@ def scene_changes(values: Mapping[str, float], parameters: Mapping[str, Any]) ->
 
 def _suggestion(name: str, parameters: Mapping[str, Any]) -> str:
     near = difflib.get_close_matches(name, [key for key, value in parameters.items() if isinstance(value, (int, float))], 1, SIMILAR)
-    return f" (did you mean {near[0]}?)" if near else ""
+    return f" (did you mean {near[0]}?)" if near and name not in parameters else ""

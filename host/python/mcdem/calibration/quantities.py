@@ -46,7 +46,7 @@ class Quantities:
         object.__setattr__(self, "columns", [slice(a, b) for a, b in zip(ends, ends[1:])])
 
     def __len__(self) -> int:
-        return self.columns[-1].stop if self.columns else 0
+        return sum(len(one.place) for one in self.each)
 
     def of(self, replicas: Replicas) -> Floats:
         """(replicas, values)"""
@@ -64,8 +64,9 @@ def curves(reference: Replicas, wanted: Sequence[str] = ()) -> Quantities:
     known = {one.name: one for one in (_of_programme(reference) if is_programme else _of_levels(reference)) if len(one.place)}
     if not known:
         raise InputError("the experiment must have scans after its discarded cycles, got none")
-    if is_programme and (unknown := [name for name in wanted if name not in known]):
-        raise InputError(f"--compare: must be of {', '.join(known)}; got {', '.join(unknown)}")
+    others = [] if is_programme else [NAMES]  # single values
+    if unknown := [name for name in wanted if name not in known and not (others and ("@" in name or name == "top_force"))]:
+        raise InputError(f"--compare: must be of {', '.join([*known, *others])}; got {', '.join(unknown)}")
     return Quantities([known[name] if name in known else single(name, stroke_of(reference)) for name in wanted or known])
 
 
@@ -125,7 +126,7 @@ def single(name: str, displacement: float) -> Quantity:
         return Quantity(name, "N", force.place, force.unloads, top)
     found = NAME.fullmatch(name)
     if not found or not 0 < float(found[2]) * MM <= displacement * (1 + 1e-9):
-        raise InputError(f"{name}: must be force, coordination, {NAMES}, within the stroke of {displacement / MM:.2f} mm")
+        raise InputError(f"{name}: must be {NAMES}, within the stroke of {displacement / MM:.2f} mm")
     kind, level = found[1], Level(AT[found[1]], float(found[2]) * MM, (), ())
     if kind == "coordination":
         return at_levels(name, [level], lambda _, theirs: by_replica(theirs, recorded_coordination))

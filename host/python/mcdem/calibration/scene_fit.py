@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 VARIES = ("packing.", "container.", "box.")  # what may differ between replicas
 UNDETERMINED = 0.5  # standard error, over ten thirds of the first step (for most keys: over their value)
 LEAST_CHANGE = 4.0  # of the data by that much of a key, sum of squares over sigma: less determines nothing
+NOISE = 3.0  # a change counts if its square is this many times what the scatter of the trials makes of it
 SETTLED = 0.5  # of the errors: a fit of which no round moves a key more has ended, because of the scatter between packings
 SHARE = 0.3  # of a key's effect on the data over the largest, from which it belongs to a combination
 
@@ -83,7 +84,9 @@ def fit_scene(scene: "Scene", reference: Replicas, options: FitOptions, progress
     """The scene gives packings, protocol and the start of all keys. `progress` is told the fraction of all rounds, `after_round` what is found
     so far. Raises InputError, RunError."""
     prepared = _prepared(scene, reference, options)
-    fit_keys(options.keys, prepared, 1.0)  # errors before packings are made
+    names = [name for key in fit_keys(options.keys, prepared, 1.0) for name in key.values(0)]  # errors before packings are made
+    if twice := [name for name in dict.fromkeys(names) if names.count(name) > 1]:
+        raise InputError(f"{', '.join(twice)}: must be in one of the keys that are fitted together")
     fitted = curves(reference, options.compared)
     work = _Work(Trials(prepared, options.device, options.folder), prepared, reference, fitted, options)
     found = None
@@ -98,13 +101,14 @@ def _prepared(scene: "Scene", reference: Replicas, options: FitOptions) -> "Scen
     model, values = calibrated_model(options.model, "--model").value if options.model else "", scene.parameters
     problems = [f"calibrate: {key} must be the same for all replicas: give one value with --set {key}=.."
                 for key in keys_that_vary(values) if key != SEED and not key.startswith(VARIES) and not (model and key == MODEL)]
-    programmes, cells = (has_programme(values[0]), reference[0].has_programme), (values[0]["container.shape"] == "cell", reference[0].box.is_cell)
+    first: Mapping[str, Any] = values[0]
+    programmes, cells = (has_programme(first), reference[0].has_programme), (first["container.shape"] == "cell", reference[0].box.is_cell)
     if programmes[0] != programmes[1] or cells[0] != cells[1]:
         problems.append("calibrate: scene and experiment must both have strokes, the same [[programme]], or both be cells")
     if problems:
         raise InputError(problems)
     if not programmes[0]:
-        check_stroke(values[0]["plate.start"] - values[0]["plate.end"], stroke_of(reference))
+        check_stroke(first["plate.start"] - first["plate.end"], stroke_of(reference))
     threshold = reference[0].value(THRESHOLD)
     changes: dict[str, Any] = {"output.positions": False, "output.contacts": False} | ({MODEL: model} if model else {})
     if isinstance(threshold, (int, float)):
@@ -165,7 +169,7 @@ class _Work:
         return self.result()
 
     def _changes(self, values: Floats) -> dict[str, float]:
-        return dict(zip((key.name for key in self.keys), values.tolist(), strict=True))
+        return {name: value for key, one in zip(self.keys, values.tolist(), strict=True) for name, value in key.values(one).items()}
 
     def _leave_out(self) -> None:
         """Values that the scene's own simulations do not reach."""
@@ -221,14 +225,14 @@ class _Work:
 
     def _undetermined(self, covariance: Floats) -> list[list[tuple[str, float]]]:
         weight, noise = (one * np.outer(self._scale, self._scale) for one in self.fit.slopes())
-        is_alone = np.diag(weight) < np.fmax(LEAST_CHANGE, np.diag(noise))  # the key changes nothing
+        is_alone = np.diag(weight) < np.fmax(LEAST_CHANGE, NOISE * np.diag(noise))  # the key changes nothing
         groups = [[(key.name, math.nan)] for key, alone in zip(self.keys, is_alone, strict=True) if alone]
         others = np.flatnonzero(~is_alone)
         of_others = np.ix_(others, others)
         scaled = np.nan_to_num(covariance / np.outer(self._scale, self._scale))[of_others]
         sizes, directions = np.linalg.eigh(weight[of_others])
         for size, v in zip(sizes, directions.T, strict=True):
-            if size < max(LEAST_CHANGE, float(v @ noise[of_others] @ v)) or float(v @ scaled @ v) > UNDETERMINED**2:
+            if size < max(LEAST_CHANGE, NOISE * float(v @ noise[of_others] @ v)) or float(v @ scaled @ v) > UNDETERMINED**2:
                 effect = np.abs(v) * np.sqrt(np.diag(weight)[others])  # of each key on the data, which cancel each other
                 members = [k for k in np.argsort(-effect).tolist() if effect[k] >= SHARE * effect.max()]
                 step = 0.1 * v / v[members[0]]

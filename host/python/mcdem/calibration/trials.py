@@ -47,9 +47,10 @@ class Trials:
             wanted = [scene_changes(one, self._parameters) for one in missing.values()]
             run = run_of(self.batch.simulate(wanted, scans, progress)).recordings
             for k, (name, values) in enumerate(missing.items()):
-                read_from = self._parameters["plate.start"] - values.get(OFFSET, 0.0)
-                self._keep(name, quantities.of([replace(one, plate_start=read_from) if OFFSET in values else one
-                                                for one in run[k * self.packings:][:self.packings]]))
+                replicas = run[k * self.packings:][:self.packings]
+                if OFFSET in values:
+                    replicas = tuple(replace(one, plate_start=self._parameters["plate.start"] - values[OFFSET]) for one in replicas)
+                self._keep(name, quantities.of(replicas))
         return np.array([self._known[name] for name in names])
 
     def _find(self, name: str, quantities: Quantities) -> bool:

@@ -22,9 +22,10 @@ from .trials import ALL_SCANS, Trials, mean_data
 if TYPE_CHECKING:
     from .._engine import Scene
 
-KEYS = ("grains.youngs_modulus", "contact.gamma", "grains.poisson_ratio", "grains.friction", "walls.friction", DIAMETERS, OFFSET)  # by default
+KEYS = ("grains.youngs_modulus", "contact.gamma", "grains.poisson_ratio", "grains.friction+walls.friction", DIAMETERS, OFFSET)  # by default
 HALVES = 0.5, 1.0  # of the stroke, where by default the force and Z are shown
 BATCH = 3  # values of a key in the first round, besides the scene's; later it is one
+FOR_SQUARES = 3  # trials: paired ones hardly scatter
 LEVELS = 30  # of the curves
 
 
@@ -87,7 +88,10 @@ def what_if(scene: "Scene", reference: Replicas | None, options: WhatIfOptions, 
 def _is_moved(key: str, parameters: Mapping[str, Any]) -> bool:
     if key == "contact.gamma":
         return bool(parameters["contact.model"] == "mc_dem")
-    return key == OFFSET or (parameters.get(key) is not None and not ("species.1.name" in parameters and key.startswith("grains.")))
+    names = key.split("+")
+    if "species.1.name" in parameters and any(name.startswith("grains.") for name in names):
+        return False  # species have their own
+    return key == OFFSET or all(parameters.get(name) is not None and (parameters[name] or len(names) == 1) for name in names)
 
 
 class _Work:
@@ -95,7 +99,7 @@ class _Work:
 
     def __init__(self, scene: "Scene", reference: Replicas | None, options: WhatIfOptions) -> None:
         self.trials = Trials(scene, options.device, options.folder)
-        self._parameters: Mapping[str, Any] = scene.parameters[0]
+        self._parameters: dict[str, Any] = scene.parameters[0]
         self._options, self._reference, self.rounds = options, reference, 0
         self._stroke = self._parameters["plate.start"] - self._parameters["plate.end"]
         name, self._value = options.target or ("top_force", math.nan)
@@ -115,7 +119,7 @@ class _Work:
         self._keys = keys
         target = Target(np.array([self._value]), np.array([abs(self._value) or 1.0]))
         ends = [[np.array([value]) for value in (key.low, key.high, key.range_low, key.range_high)] for key in keys]
-        self._fits = [Fit(target, Ranges(*four, 2e-3 * (four[3] - four[2])), BATCH) for four in ends]
+        self._fits = [Fit(target, Ranges(low, high, first, last, 2e-3 * (last - first)), BATCH, FOR_SQUARES) for low, high, first, last in ends]
         self._data = [dict[float, Floats]() for _ in keys]
 
     def open(self) -> list[int]:
@@ -125,7 +129,7 @@ class _Work:
     def round(self, progress: Callable[[float], object]) -> None:
         """All keys' trials in one batch."""
         wanted = [(k, value) for k in self.open() for value in self._values(k)]
-        changes = [{self._keys[k].name: value} if value != self._keys[k].value else {} for k, value in wanted]
+        changes = [self._keys[k].values(value) if value != self._keys[k].value else {} for k, value in wanted]
         data = self.trials.data(changes, self._all, self._scans(), progress)
         for k in self.open():
             rows = [row for row, (owner, _) in enumerate(wanted) if owner == k]

@@ -18,12 +18,12 @@ simulated together, on the same packings. The table has the value needed, its re
 what other quantities become. Quantities: top_force (at maximum compression), force@MM (on the plate,
 loading), unloading_force@MM, coordination@MM (Z, contacts per grain), force_share@MM (over the top
 force); MM: plate displacement in mm. effects.diameter_error is an error of all diameters,
-strain_offset one of the plate's zero. With --out trials are kept: the same command continues.
+strain_offset one of the plate's zero; KEY+KEY move together and keep their ratio. With --out trials are kept: the same command continues.
 Examples (DIR: your experiment folder):
   mcdem what-if scenes/compression.toml --set contact.model=hyperelastic_sphere --experiment DIR --out out/what-if
   mcdem what-if scenes/small.toml --set contact.model=mc_dem --target top_force=2.5 --keys grains.youngs_modulus --rounds 2
   mcdem what-if scenes/compression.toml --set contact.model=hyperelastic_sphere --set packing.file=input.data \\
-      --target top_force=15.5 --keys grains.youngs_modulus,effects.diameter_error,grains.friction --show force_share@18"""
+      --target top_force=15.5 --keys grains.youngs_modulus,effects.diameter_error,grains.friction+walls.friction --show force_share@18"""
 
 NUMBERS = {
     "accuracy": (0.005, "X", above_zero, "Relative difference from the target at which it counts as met"),
@@ -83,8 +83,8 @@ def run(options: argparse.Namespace) -> int:
 
             result = what_if(scene, reference.replicas if reference else None, wanted, progress.show, after_round)
         print(what_if_text(result), end="")
-        if folder:
+        if folder is not None:
             print(f"wrote\n  {folder / 'what_if.json'}", flush=True)
-            for figure in draw_if_possible(lambda: draw_figures(folder, {"what_if": what_if_figure_values(result)})):
+            for figure in draw_if_possible(lambda: draw_figures(options.out, {"what_if": what_if_figure_values(result)})):
                 print(f"  {figure}")
     return 0

@@ -13,7 +13,7 @@ def what_if(source: Source, axes: Any = None) -> Any:
     """Left: the target quantity over the change of each key; line: the target, large marker: where it is met (open: nearest to it).
     Right: the force on the plate of the scene and of each of these, with the experiment."""
     values = read(source, "what_if")
-    axes = new_axes(PAGE, 64 + 3.2 * (len(values["series"]) // 3 + 1), ncols=2) if axes is None else axes
+    axes = new_axes(PAGE, 70, ncols=2) if axes is None else axes
     left, right = axes
     left.axhline(values["target"], color=GREY, linewidth=0.7, linestyle=":")
     right.plot(values["displacement"], _numbers(values["scene_force"]), color=GREY, linestyle="--")
@@ -39,7 +39,7 @@ def what_if(source: Source, axes: Any = None) -> Any:
     left.set_xticks(shown, [f"{tick:+}" if tick else "0" for tick in shown])
     left.minorticks_off()
     right.set(xlabel="plate displacement [mm]", ylabel="force on the plate [N]", ylim=(0, None))
-    key(left, entries, "upper left", bbox_to_anchor=(-0.1, -0.17), ncol=3, columnspacing=1.2)
+    key(right, entries, "upper left")
     return axes
 
 
