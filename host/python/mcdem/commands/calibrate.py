@@ -26,7 +26,7 @@ to the force on the plate over its displacement, loading and unloading, and to t
 contact model. All trials use the same packings. Reported are errors, correlations, keys which the
 data do not determine, and what difference remains (the paper's Rtop, errf and errZ). Limits are those
 of the keys, or KEY=LOW..HIGH. effects.diameter_error is an error of all diameters, strain_offset one
-of the plate's zero. With --out trials are kept in DIR/trials: the same command continues an
+of the plate's zero; KEY+KEY move together and keep their ratio. With --out trials are kept in DIR/trials: the same command continues an
 interrupted fit, and calibration.json has what was found after every round.
 
 More packings (batch.replicas) reduce the error: single runs scatter by 1 to 3 %.
