@@ -1,4 +1,4 @@
-"""Figures for print of runs, comparisons, diagnoses, calibrations, convergence studies and challenges, drawn with matplotlib.
+"""Figures for print of runs, comparisons, diagnoses, what-if tables, convergence studies and challenges, drawn with matplotlib.
 
     axes = mcdem.figures.top_force("out/small")
     axes.set_xlim(0, 20)
