@@ -52,7 +52,8 @@ def _met(move: Move) -> str:
 
 
 def _numbers(values: Floats) -> list[str]:
-    return [number(value) for value in values.tolist()]
+    """The target with four digits, because it is met within half a per cent."""
+    return [number(value, ".3g" if k else ".4g") for k, value in enumerate(values.tolist())]
 
 
 def _stop_words(displacement: Floats, force: Floats) -> str:
