@@ -202,9 +202,13 @@ class _Work:
                 for x in (tuple(self._start.tolist()), near)]
         return SceneFit(self.keys, values, error, found.standard_error if found else np.diag(unknown), correlation, at_limit,
                         self._undetermined(covariance) if found else [], tuple(self.rounds), self._differences(near), (tops[0], tops[1]),
-                        self.fit.end, self._trials.packings, [*self.notes, *notes],
+                        self.fit.end, self._trials.packings, [*self.notes, *self._stopped(), *notes],
                         [f"{name}={value:.6g}" for name, value in scene_changes(self._changes(values), self._parameters).items()],
                         float(self._mean[-1]) if len(self._all) > len(self._fitted) else math.nan)
+
+    def _stopped(self) -> list[str]:
+        count = len(self.fit.failed)
+        return [f"{count} of {len(self._data)} trials stopped early and were left out: best values may be beyond what could be simulated"] * bool(count)
 
     def _packing_covariance(self, data: Floats, found: Minimum) -> tuple[Floats, list[str]]:
         """(p, p) of the values, from the scatter between the packings of the scene and of the reference; and what it leaves out."""

@@ -99,9 +99,9 @@ class _Work:
 
     def __init__(self, scene: "Scene", reference: Replicas | None, options: WhatIfOptions) -> None:
         self.trials = Trials(scene, options.device, options.folder)
-        self._parameters: dict[str, Any] = scene.parameters[0]
-        self._options, self._reference, self.rounds = options, reference, 0
-        self._stroke = self._parameters["plate.start"] - self._parameters["plate.end"]
+        parameters: Mapping[str, Any] = scene.parameters[0]
+        self._parameters, self._options, self._reference, self.rounds = parameters, options, reference, 0
+        self._stroke = parameters["plate.start"] - parameters["plate.end"]
         name, self._value = options.target or ("top_force", math.nan)
         place = stroke_of(reference) if reference else self._stroke
         others = options.shown or [f"{kind}@{round(part * place / MM, 2):g}" for kind in ("force_share", "coordination") for part in HALVES
