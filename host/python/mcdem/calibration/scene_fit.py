@@ -208,7 +208,8 @@ class _Work:
 
     def _stopped(self) -> list[str]:
         count = len(self.fit.failed)
-        return [f"{count} of {len(self._data)} trials stopped early and were left out: best values may be beyond what could be simulated"] * bool(count)
+        return [f"{count} of {len(self._data)} trials stopped early and were left out: the best values may be beyond what could be simulated"
+                ] * bool(count)
 
     def _packing_covariance(self, data: Floats, found: Minimum) -> tuple[Floats, list[str]]:
         """(p, p) of the values, from the scatter between the packings of the scene and of the reference; and what it leaves out."""

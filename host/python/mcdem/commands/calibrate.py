@@ -26,8 +26,9 @@ to the force on the plate over its displacement, loading and unloading, and to t
 contact model. All trials use the same packings. Reported are errors, correlations, keys which the
 data do not determine, and what difference remains (the paper's Rtop, errf and errZ). Limits are those
 of the keys, or KEY=LOW..HIGH. effects.diameter_error is an error of all diameters, strain_offset one
-of the plate's zero; KEY+KEY move together and keep their ratio. With --out trials are kept in DIR/trials: the same command continues an
-interrupted fit, and calibration.json has what was found after every round.
+of the plate's zero; KEY+KEY move together and keep their ratio. With --out trials are kept in
+DIR/trials: the same command continues an interrupted fit, and calibration.json has what was found
+after every round.
 
 More packings (batch.replicas) reduce the error: single runs scatter by 1 to 3 %.
 Examples (DIR: your experiment folder):
@@ -42,7 +43,8 @@ Examples (DIR: your experiment folder):
 SEARCH = {
     "low": (0.5, "VALUE", at_least_zero, "Lower end of the search: gamma, or E divided by the scene's E; not with --fit"),
     "high": (1.5, "VALUE", at_least_zero, "Upper end of the search: gamma, or E divided by the scene's E; not with --fit"),
-    "tolerance": (0.005, "ERROR", at_least_zero, "Stop at this standard error of gamma, or of E divided by the scene's E; with --fit of each key over its value"),
+    "tolerance": (0.005, "ERROR", at_least_zero, "Stop at this standard error of gamma, or of E divided by the scene's E; with --fit of each key over "
+                  "its value"),
     "batch": (6, "N", whole_in(3, 10_000), "Number of values that are simulated together in one round; several keys: one, and two for each key"),
     "rounds": (8, "N", whole_in(1, 10_000), "Maximum number of rounds"),
 }
@@ -50,7 +52,8 @@ SEARCH = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
-    add_reference_options(parser, "--experiment", "Experiment folder or run whose mean top force at maximum compression is the target",
+    add_reference_options(parser, "--experiment", "Experiment folder or run whose mean top force at maximum compression, or with --fit its curves, are "
+                          "the target; may be repeated",
                           required=True)
     parser.add_argument("--fit", metavar="KEY,..", type=names, action="extend", default=[],
                         help="Keys to fit together, each also as KEY=LOW..HIGH (SI units)")
@@ -60,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--model", metavar="MODEL",
                         help="mc_dem: fit gamma; any other contact model: fit Young's modulus of the grains (default: mc_dem). "
                              "With --fit: the contact model, by default the scene's")
-    parser.add_argument("--out", metavar="DIR", type=output_path, help="Folder for calibration.json")
+    parser.add_argument("--out", metavar="DIR", type=output_path, help="Folder for calibration.json, with --fit also for the trials")
     add_device_option(parser)
     add_numbers(parser, SEARCH)
 

@@ -18,7 +18,8 @@ simulated together, on the same packings. The table has the value needed, its re
 what other quantities become. Quantities: top_force (at maximum compression), force@MM (on the plate,
 loading), unloading_force@MM, coordination@MM (Z, contacts per grain), force_share@MM (over the top
 force); MM: plate displacement in mm. effects.diameter_error is an error of all diameters,
-strain_offset one of the plate's zero; KEY+KEY move together and keep their ratio. With --out trials are kept: the same command continues.
+strain_offset one of the plate's zero; KEY+KEY move together and keep their ratio. With --out trials
+are kept: the same command continues.
 Examples (DIR: your experiment folder):
   mcdem what-if scenes/compression.toml --set contact.model=hyperelastic_sphere --experiment DIR --out out/what-if
   mcdem what-if scenes/small.toml --set contact.model=mc_dem --target top_force=2.5 --keys grains.youngs_modulus --rounds 2

@@ -42,8 +42,10 @@ def round_text(fit: SceneFit) -> str:
 
 def fit_text(fit: SceneFit) -> str:
     vague = {name for group in fit.undetermined for name, _ in group}
-    rows = [[key.name, value_text(key, value, error) if key.name not in vague else value_text(key, value) + ", not determined", value_text(key, key.value), change_text(key, value)]
-            for key, value, error in zip(fit.keys, fit.values.tolist(), fit.standard_error.tolist(), strict=True)]
+    texts = [value_text(key, value) + ", not determined" if key.name in vague else value_text(key, value, error)
+             for key, value, error in zip(fit.keys, fit.values.tolist(), fit.standard_error.tolist(), strict=True)]
+    rows = [[key.name, text, value_text(key, key.value), change_text(key, value)]
+            for key, text, value in zip(fit.keys, texts, fit.values.tolist(), strict=True)]
     lines = [to_text(table_of(["<key", "value", "scene", "change"], rows))]
     rows = [[WORDS.get(one.quantity, one.quantity) + (f" [{one.unit}]" if one.unit else ""), number(one.before), number(one.after),
              number(one.expected)] for one in fit.differences]
