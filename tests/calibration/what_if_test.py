@@ -82,6 +82,9 @@ class Moves(unittest.TestCase):
         self.assertEqual(result.target, measured[0].scans.top_force[7])
         self.assertAlmostEqual(result.moves[0].value, 28e3, delta=0.01 * 28e3)
         self.assertIn("\nexperiment ", what_if_text(result))
+        counted = run_of(mcdem.simulate(scene(protocol__force_threshold=0.02))).recordings  # of the same scene, without weak contacts
+        same = found(scene(), counted, keys=["grains.youngs_modulus"], rounds=1)
+        np.testing.assert_array_equal(same.base, same.measured_numbers)
         self.assertEqual(what_if_figure_values(result)["measured"][1][-1], result.target)
 
     def test_a_scene_that_stops_tells_how_far_it_came(self):

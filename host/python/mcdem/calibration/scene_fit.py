@@ -109,13 +109,17 @@ def _prepared(scene: "Scene", reference: Replicas, options: FitOptions) -> "Scen
         raise InputError(problems)
     if not programmes[0]:
         check_stroke(first["plate.start"] - first["plate.end"], stroke_of(reference))
-    threshold = reference[0].value(THRESHOLD)
-    changes: dict[str, Any] = {"output.positions": False, "output.contacts": False} | ({MODEL: model} if model else {})
-    if isinstance(threshold, (int, float)):
-        changes[THRESHOLD] = threshold
+    changes: dict[str, Any] = {MODEL: model} if model else {}
     if not programmes[0]:
         changes["protocol.scan_at_start"] = True  # levels between the first displacement and the next scan are known, too
-    return scene.parse(scene.text, set=changes)
+    return of_averages(scene, reference, changes)
+
+
+def of_averages(scene: "Scene", reference: Replicas | None, changes: Mapping[str, Any] = {}) -> "Scene":
+    """With these changes, without positions and contacts, and with the reference's force threshold, which decides what counts in Z."""
+    threshold = reference[0].value(THRESHOLD) if reference else None
+    known = {THRESHOLD: threshold} if isinstance(threshold, (int, float)) else {}
+    return scene.parse(scene.text, set={"output.positions": False, "output.contacts": False, **known, **changes})
 
 
 class _Work:

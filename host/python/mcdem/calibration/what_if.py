@@ -16,7 +16,7 @@ from ..results.recording import Floats
 from .fit import End, Fit, Ranges, Target
 from .keys import DIAMETERS, OFFSET, FitKey, fit_keys
 from .quantities import MM, Quantities, Quantity, at_levels, curves, single, stroke_of
-from .scene_fit import VARIES
+from .scene_fit import VARIES, of_averages
 from .trials import ALL_SCANS, Trials, mean_data
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def what_if(scene: "Scene", reference: Replicas | None, options: WhatIfOptions, 
     if problems := [f"what-if: {key} must be the same for all replicas: give one value with --set {key}=.."
                     for key in keys_that_vary(scene.parameters) if key != SEED and not key.startswith(VARIES)]:
         raise InputError(problems)
-    prepared = scene.parse(scene.text, set={"output.positions": False, "output.contacts": False})
+    prepared = of_averages(scene, reference)
     words = options.keys or [key for key in KEYS if _is_moved(key, parameters)]
     fit_keys(words, prepared, 1.0)  # errors before packings are made
     work = _Work(prepared, reference, options)
