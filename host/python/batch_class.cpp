@@ -18,6 +18,13 @@ public:
         : device_(device), scene_(scene), packings_(make_packings(scene, stop_wanted)) {}
 
     std::size_t packings() const { return packings_.size(); }
+    /// Of all grains [m].
+    double mean_diameter() const {
+        double sum = 0, count = 0;
+        for (const Packing& packing : packings_)
+            for (const double diameter : packing.diameter) sum += diameter, count += 1;
+        return sum / count;
+    }
     std::string device_name() const { return device_.info().name; }
 
     /// For each of `changes` all replicas of the scene with these values.
@@ -56,6 +63,7 @@ void bind_batch(py::module_& module) {
              }),
              py::arg("scene"), py::arg("device"))
         .def_property_readonly("packings", &Batch::packings)
+        .def_property_readonly("mean_diameter", &Batch::mean_diameter)
         .def_property_readonly("device_name", &Batch::device_name)
         .def(
             "simulate",

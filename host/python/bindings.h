@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "core/errors.h"
 #include "core/recording.h"
 
 namespace mcdem::inline python {
@@ -32,5 +33,12 @@ KeyValues key_values(const pybind11::dict& values);
 
 /// A run in Python: shared by arrays and recordings, immutable.
 using SharedRun = std::shared_ptr<Run>;
+
+/// All replicas of a run stopped early; in Python the error has their recordings as `run`.
+struct AllStopped : RunError {
+    AllStopped(const std::string& causes, SharedRun run)
+        : RunError("all replicas stopped early:\n" + causes), run(std::move(run)) {}
+    SharedRun run;
+};
 
 }  // namespace mcdem::python

@@ -15,9 +15,11 @@ namespace mcdem::inline python {
 namespace {
 
 /// Raises the exception of that name in mcdem.errors.
-void raise(const char* name, const pybind11::object& what) {
+void raise(const char* name, const pybind11::object& what, const SharedRun& run = nullptr) {
     const pybind11::object type = pybind11::module_::import("mcdem.errors").attr(name);
-    PyErr_SetObject(type.ptr(), type(what).ptr());
+    const pybind11::object error = type(what);
+    if (run) error.attr("run") = run;
+    PyErr_SetObject(type.ptr(), error.ptr());
 }
 
 /// Errors that are reported to the user become those of the package (host/python/mcdem/errors.py).
@@ -28,6 +30,8 @@ void translate(std::exception_ptr error) {
         raise("InputError", pybind11::cast(input.problems()));
     } catch (const cl::Error& opencl) {
         raise("DeviceError", pybind11::cast(text_of(opencl)));
+    } catch (const AllStopped& all) {
+        raise("RunError", pybind11::cast(std::string(all.what())), all.run);
     } catch (const RunError& run) {
         raise("RunError", pybind11::cast(std::string(run.what())));
     } catch (const std::filesystem::filesystem_error& file) {

@@ -130,6 +130,26 @@ void bind_variants(py::class_<Scene>& type) {
         });
 }
 
+void bind_keys(py::module_& module) {
+    module.def(
+        "key_unit",
+        [](const std::string& name) {
+            const Key* key = find_key(name);
+            if (!key) throw py::key_error(name);
+            return std::string(key->unit);
+        },
+        py::arg("key"));
+    module.def(
+        "key_range",
+        [](const std::string& name) -> py::object {
+            const Key* key = find_key(name);
+            if (!key || !std::holds_alternative<MemberOf<double>>(key->member)) return py::none();
+            return py::make_tuple(key->range.low, key->range.high,
+                                  key->range.low_end == Range::Low::excluded);
+        },
+        py::arg("key"));
+}
+
 }  // namespace
 
 void bind_scene(py::module_& module) {
@@ -188,14 +208,7 @@ void bind_scene(py::module_& module) {
         "A scene file with overrides \"key=value\", and warnings about its packing files.");
     module.def("expect_plate", &expect_plate, py::arg("scene"), py::arg("what"),
                "Refuses cells and species, which `what` does not support.");
-    module.def(
-        "key_unit",
-        [](const std::string& name) {
-            const Key* key = find_key(name);
-            if (!key) throw py::key_error(name);
-            return std::string(key->unit);
-        },
-        py::arg("key"));
+    bind_keys(module);
     module.def("expect_plain_strokes", &expect_plain_strokes, py::arg("scene"), py::arg("what"),
                "Refuses cells, species and programmes, which `what` does not support.");
     module.def(

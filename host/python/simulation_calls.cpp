@@ -34,14 +34,14 @@ std::string failure_text(const std::string& label, const Failure& failure) {
 }
 
 /// As in the program: a replica that stops is a warning; if all stop, it is an error.
-void expect_one_alive(const Run& run) {
+void expect_one_alive(const SharedRun& run) {
     std::string causes;
-    for (const Recording& recording : run.recordings) {
+    for (const Recording& recording : run->recordings) {
         if (!recording.failure) return;
         if (!causes.empty()) causes += '\n';
         causes += failure_text(recording.label, *recording.failure);
     }
-    if (!causes.empty()) throw RunError(fmt::format("all replicas stopped early:\n{}", causes));
+    if (!causes.empty()) throw AllStopped(causes, run);
 }
 
 SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::object progress) {
@@ -63,7 +63,7 @@ SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::obje
     } catch (const Interrupted&) {
     }
     watch.raise();
-    expect_one_alive(*run);
+    expect_one_alive(run);
     return run;
 }
 
@@ -88,7 +88,7 @@ SharedRun run_into(const Scene& scene, const std::filesystem::path& folder, bool
         if (run_scene(device, scene, options).end != RunEnd::interrupted) *run = read_run(folder);
     }
     watch.raise();
-    expect_one_alive(*run);
+    expect_one_alive(run);
     return run;
 }
 
@@ -130,7 +130,8 @@ void bind_simulation(py::module_& module) {
                "The OpenCL devices that a run can use, in the order of `device` numbers.");
     module.def("simulate", &simulate_scene, py::arg("scene"), py::kw_only(), py::arg("device") = "",
                py::arg("progress") = py::none(),
-               "Runs a scene in memory. `progress(fraction)` is called after every round.");
+               "Runs a scene in memory. `progress(fraction)` is called after every round.\n\n"
+               "If all replicas stop early, the RuntimeError has what they recorded until then as `run`.");
     module.def("run", &run_into, py::arg("scene"), py::arg("folder"), py::kw_only(),
                py::arg("resume") = false, py::arg("device") = "", py::arg("progress") = py::none(),
                "Runs a scene into a folder, as `mcdem run` does, and returns its results.\n\n"

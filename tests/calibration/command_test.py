@@ -102,8 +102,24 @@ class Command(unittest.TestCase):
                                                "first"))
         self.assertEqual(file.read_text(), "mine")
 
+    def test_several_keys_are_fitted(self):
+        folder = self.folder / "fit"
+        words = ["--model", "elastic_sphere", "--fit", "grains.youngs_modulus,grains.friction", "--rounds", "1", "--out", str(folder)]
+        code, out, messages = self.command(*words)
+        self.assertEqual(code, 0, messages)
+        self.assertRegex(messages, r"round 1: grains.youngs_modulus = 23.\d* (± \S+ )?kPa, grains.friction = 0.0\d*.*; misfit 0 \(rms: force 0 N")
+        self.assertRegex(out, r"^key +value +scene +change\n")
+        self.assertTrue(out.endswith(f"wrote {folder / 'calibration.json'}\n"))
+        document = json.loads((folder / "calibration.json").read_text())
+        self.assertEqual(list(document["keys"]), ["grains.friction", "grains.youngs_modulus"])
+        self.assertEqual(document["differences"]["force"]["after"], 0)  # the scene made the reference
+        self.assertEqual((document["Rtop"], len(document["rounds"])), ([1, 1], 1))
+        self.assertTrue(list((folder / "trials").iterdir()))
+
     def test_wrong_options_are_refused(self):
         for words, problem in ((["--model", "hertz"], '--model must be one of independent, .*, got "hertz"'),
+                               (["--compare", "force"], "--compare: is an option of --fit"),
+                               (["--fit", "grains.youngs_moduls", "--model", "mc_dem"], r"did you mean grains.youngs_modulus\?"),
                                (["--setting", "nope"], "--setting: must be one of .*run's: elastic_sphere; got nope"),
                                (["--experiment", str(self.folder / "nowhere")], "nowhere: must be a result folder or file"),
                                (["--out", str(self.folder / "small.toml")], "small.toml: is a file; give a folder for the results")):

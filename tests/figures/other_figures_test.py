@@ -1,4 +1,4 @@
-"""Figures of a convergence study and of a challenge have the values of figures.json. other_figures_test.py PROGRAM"""
+"""Figures of a convergence study, of a what-if table and of a challenge have the values of figures.json. other_figures_test.py PROGRAM"""
 import json
 import pathlib
 import shutil
@@ -20,6 +20,13 @@ VALUES = {
         "rows": [{"observable": "top_force", "words": "top force", "errors": [{"over_limit": 2, "standard_error": 0.25}, None]},
                  {"observable": "mean_force", "words": "mean force", "errors": [{"over_limit": -30, "standard_error": 0.5},
                                                                                {"over_limit": 0.5, "standard_error": None}]}]},
+    "what_if": {
+        "x_label": "change", "y_label": "top force [N]", "target": 3.0, "top_force": 3.0, "displacement": [1, 2], "scene_force": [1, 2],
+        "measured": None, "series": [
+            {"words": "stiffer", "colour": "#0072B2", "marker": "s", "change": [0, 50], "target": [2, 3], "is_met": True, "found": [50, 3],
+             "force": [1.5, 3]},
+            {"words": "rougher", "colour": "#D55E00", "marker": "o", "change": [0, 900], "target": [2, None], "is_met": False,
+             "found": [0, 2], "force": [1, None]}]},
     "confusion": {"truths": ["no gap", "adhesion"], "verdicts": ["no gap", "adhesion", "unknown effect"],
                   "cases": [[9, 1, 0], [2, 3, 5]], "right": [[0, 0], [1, 1]]},
     "power": {"x_label": "amplitude", "y_label": "detected",
@@ -36,6 +43,20 @@ def setUpModule():
     unittest.addModuleCleanup(shutil.rmtree, folder)
     unittest.addModuleCleanup(plt.close, "all")
     (folder / "figures.json").write_text(json.dumps(VALUES))
+
+
+class WhatIf(unittest.TestCase):
+    def test_trials_solutions_and_curves_are_drawn(self):
+        left, right = figures.what_if(folder)
+        self.assertEqual(left.get_ylabel(), "top force [N]")
+        level, *lines = left.lines
+        self.assertEqual(list(level.get_ydata()), [3, 3])
+        np.testing.assert_array_equal([line.get_xydata()[-1] for line in lines], [[50, 3], [50, 3], [900, np.nan], [0, 2]])
+        self.assertEqual([line.get_markerfacecolor() for line in lines[1::2]], ["#0072B2", "white"], "open where the target is not met")
+        curves = [line.get_ydata() for line in right.lines]
+        np.testing.assert_array_equal(curves[:3], [[1, 2], [1.5, 3], [1, np.nan]])
+        self.assertEqual(right.lines[3].get_xydata().tolist(), [[2, 3]], "the target, without an experiment")
+        self.assertEqual(drawn.words_of(right), ["scene", "stiffer", "rougher", "target"])
 
 
 class Convergence(unittest.TestCase):

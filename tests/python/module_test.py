@@ -325,11 +325,14 @@ class Runs(Folder):
 
     def test_where_all_replicas_fail_the_run_fails(self):
         # far beyond the range of a half space: the corrections run away
-        scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.03}, contact={"model": "mc_dem", "gamma": 1.8})
+        scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.03}, contact={"model": "mc_dem", "gamma": 1.8},
+                            protocol=SMALL["protocol"] | {"scans_per_stroke": 20})
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            with self.assertRaisesRegex(RuntimeError, "all replicas stopped early"):
+            with self.assertRaisesRegex(RuntimeError, "all replicas stopped early") as raised:
                 mcdem.simulate(scene)
+        partial, = raised.exception.run  # what was recorded until then
+        self.assertTrue(partial.failure and 0 < len(partial.scans) and np.isfinite(partial.top_force).all())
         self.assertTrue(any("stopped at step" in str(one.message) for one in said))
 
     def test_a_failure_says_where_and_why(self):

@@ -263,7 +263,9 @@ def calibrate(
     tolerance: float = 0.005,
     batch: int = 6,
     rounds: int = 8,
-    model: str = "mc_dem",
+    model: str | None = None,
+    fit: Sequence[str] = (),
+    compare: Sequence[str] = (),
     device: str = "",
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, Any]: ...

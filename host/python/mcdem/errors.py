@@ -1,5 +1,9 @@
 """Errors that are reported to the user (host/core/errors.h)."""
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from . import Run
 
 INTERRUPTED = 130  # exit code of the program
 
@@ -14,6 +18,8 @@ class InputError(ValueError):
 
 class RunError(RuntimeError):
     """The work failed although the input was valid (exit code 1)."""
+
+    run: "Run | None" = None  # where all replicas of a run stopped early: what they recorded until then
 
 
 class DeviceError(RunError):

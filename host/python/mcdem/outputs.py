@@ -31,6 +31,7 @@ PAGE = Kind("a page of mcdem", b"<!doctype html>", b'<meta name="generator" cont
 FIGURE = Kind("a figure of mcdem", b"", b"mcdem figure", 1 << 24)  # a PDF names its producer at the end
 FIGURE_VALUES = Kind("the values of figures", b'{\n "mcdem_figures"')
 CALIBRATION = Kind("a calibration", b"{\n", b'"target_top_force_N"', 1 << 24)  # keys are sorted: rounds and scene come before
+WHAT_IF = Kind("a table of what-if", b"{\n", b'"what_if_target"', 1 << 24)
 CONVERGENCE = Kind("a table of convergence", b"{\n", b'"deviations"')
 DIAGNOSIS = Kind("a diagnosis", b"{\n", b'"p_omnibus"')
 

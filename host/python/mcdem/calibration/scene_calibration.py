@@ -11,17 +11,17 @@ from .. import _engine
 from ..errors import InputError
 from ..experiment.experiment import MATERIALS, other_materials
 from ..observe.estimate import Estimate, mean_over_replicas
-from ..observe.levels import group_levels, level_tolerance
+from ..observe.levels import level_tolerance
 from ..observe.replicas import MODEL, SEED, Replicas
-from ..observe.top_force import full_stroke, top_force_at
-from ..results.engine_run import run_of
 from ..results.names import ContactModel, all_names, parse
 from ..results.parameters import keys_that_vary
 from ..results.recording import Floats
+from .quantities import Quantities, single, stroke_of
 from .search import Calibration, SearchOptions, find_value
+from .trials import Trials, mean_data
 
 if TYPE_CHECKING:
-    from .._engine import Batch, Scene
+    from .._engine import Scene
 
 GAMMA, MODULUS = "contact.gamma", "grains.youngs_modulus"  # scene keys
 LEFT_ASIDE = {MODEL, GAMMA, SEED}  # keys that may vary among the replicas of the scene
@@ -88,15 +88,29 @@ def calibrate_scene(scene: "Scene", reference: Replicas, options: Options, progr
         raise InputError(problems)
     _note_other_materials(scene, reference, options.model, note)
     parameters: dict[str, Any] = scene.parameters[0]
-    levels = group_levels(reference)
-    displacement = full_stroke(levels, reference)
-    _check_stroke(parameters["plate.start"] - parameters["plate.end"], displacement)
-    target = mean_over_replicas(top_force_at(levels, reference, displacement).value)
+    displacement = stroke_of(reference)
+    check_stroke(parameters["plate.start"] - parameters["plate.end"], displacement)
+    wanted = Quantities([single("top_force", displacement)])
+    target = mean_over_replicas(wanted.of(reference)[:, 0])
     modulus = 0.0 if options.model == ContactModel.mc_dem else parameters[MODULUS]
     search = replace(options.search, what="E over the scene's") if modulus else options.search
-    trials = _Trials(_engine.Batch(scene_of_model(scene, options.model), options.device), parameters, modulus, displacement)
-    found = find_value(lambda values: trials.top_forces(values, lambda rounds: progress(rounds / search.rounds)), target.value, search)
-    return SceneCalibration(found, target, trials.last, displacement, trials.packings, options.model, modulus)
+    strokes = 2 * parameters["protocol.cycles"] - 1  # the last unloading is not evaluated
+    scans = strokes * parameters["protocol.scans_per_stroke"] + parameters["protocol.scan_at_start"]
+    trials, simulated, rounds = Trials(scene_of_model(scene, options.model), options.device), Estimate(), 0
+
+    def top_forces(values: Floats) -> Floats:
+        nonlocal simulated, rounds
+        changes = [{MODULUS: modulus * value} if modulus else {GAMMA: value} for value in values.tolist()]
+        # The simulation may be one interval into the last unloading when it stops.
+        data = trials.data(changes, wanted, scans, lambda part: progress((rounds + min(1.0, part * (strokes + 1) / strokes)) / search.rounds))
+        rounds += 1
+        means = np.array([mean_data(one)[0] for one in data])
+        for one in data[np.isfinite(means)]:
+            simulated = mean_over_replicas(one[:, 0])
+        return means
+
+    found = find_value(top_forces, target.value, search)
+    return SceneCalibration(found, target, simulated, displacement, trials.packings, options.model, modulus)
 
 
 def scene_of_model(scene: "Scene", model: ContactModel) -> "Scene":
@@ -113,39 +127,8 @@ def _note_other_materials(scene: "Scene", reference: Replicas, model: ContactMod
              "reference is right")
 
 
-def _check_stroke(stroke: float, displacement: float) -> None:
+def check_stroke(stroke: float, displacement: float) -> None:
     """Raises InputError if the stroke of the scene does not reach the greatest displacement of the reference [m]."""
-    if not math.isfinite(displacement):
-        raise InputError("calibrate: the reference must have a scan, got none (all cycles discarded, or all replicas failed)")
     if stroke < displacement - level_tolerance:
         raise InputError("calibrate: plate.start - plate.end must reach the reference's greatest displacement of "
                          f"{displacement * 1e3:.3f} mm, got {stroke * 1e3:.3f} mm")
-
-
-class _Trials:
-    """Simulates all packings for several values of the parameter, all in one batch to fill the device."""
-
-    def __init__(self, batch: "Batch", parameters: dict[str, Any], modulus: float, displacement: float) -> None:
-        """`modulus`: of the scene [Pa], which the values multiply; 0: they are values of gamma."""
-        self._batch, self._displacement, self._modulus = batch, displacement, modulus
-        self._strokes = 2 * parameters["protocol.cycles"] - 1  # the last unloading is not evaluated
-        self._scans = self._strokes * parameters["protocol.scans_per_stroke"] + parameters["protocol.scan_at_start"]
-        self._rounds = 0
-        self.packings = batch.packings
-        self.last = Estimate()  # top force of the last value that did not run away [N]
-
-    def top_forces(self, values: Floats, progress: Callable[[float], object]) -> Floats:
-        """Mean top force at the displacement for each value [N]; NaN if it ran away. `progress` is told the number of rounds so far."""
-        changes = [{MODULUS: self._modulus * value} if self._modulus else {GAMMA: value} for value in values.tolist()]
-        # The simulation may be one interval into the last unloading when it stops.
-        recordings = run_of(self._batch.simulate(changes, self._scans, lambda part: progress(
-            self._rounds + min(1.0, part * (self._strokes + 1) / self._strokes)))).recordings
-        self._rounds += 1
-        return np.array([self._mean_top_force(recordings[k * self.packings:][:self.packings]) for k in range(len(values))])
-
-    def _mean_top_force(self, replicas: Replicas) -> float:
-        mean = mean_over_replicas(top_force_at(group_levels(replicas), replicas, self._displacement).value)
-        if 2 * mean.count <= len(replicas):
-            return math.nan
-        self.last = mean
-        return mean.value

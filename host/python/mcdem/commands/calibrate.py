@@ -1,13 +1,14 @@
-"""mcdem calibrate: gamma of MC-DEM, or E of another model, from the top force of an experiment."""
+"""mcdem calibrate: keys of a scene from an experiment; gamma of MC-DEM, or E of another model, from its top force."""
 import argparse
 import contextlib
 import math
 from typing import TYPE_CHECKING
 
+from ..errors import InputError
 from ..parts import interruptible
 from ..program import say
 from ..progress import Progress
-from .command_line import add_numbers, at_least_zero, given, output_path, whole_in
+from .command_line import add_numbers, at_least_zero, given, names, output_path, whole_in
 from .scene_options import add_device_option, add_scene_options, read_scene
 from .sources import add_reference_options
 
@@ -16,30 +17,53 @@ if TYPE_CHECKING:
     from ..observe.estimate import Estimate
 
 EPILOG = """\
-The scene gives packings, materials and protocol; its contact.model and contact.gamma are not used.
+Without --fit one number is fitted to one: gamma, or E, to the top force at maximum compression. The
+scene gives packings, materials and protocol; its contact.model and contact.gamma are not used.
+
+With --fit any numeric keys of the scene are fitted together, by least squares with a trust region:
+to the force on the plate over its displacement, loading and unloading, and to the contacts per grain
+(Z) where both know them; programmes and cells scan by scan. The scene gives the start and the
+contact model. All trials use the same packings. Reported are errors, correlations, keys which the
+data do not determine, and what difference remains (the paper's Rtop, errf and errZ). Limits are those
+of the keys, or KEY=LOW..HIGH. effects.diameter_error is an error of all diameters, strain_offset one
+of the plate's zero; KEY+KEY move together and keep their ratio. With --out trials are kept in
+DIR/trials: the same command continues an interrupted fit, and calibration.json has what was found
+after every round.
+
 More packings (batch.replicas) reduce the error: single runs scatter by 1 to 3 %.
 Examples (DIR: your experiment folder):
+  mcdem calibrate scenes/compression.toml --set contact.model=hyperelastic_sphere --experiment DIR \\
+      --fit grains.youngs_modulus,grains.friction=0..0.3,strain_offset --out out/fit
+  mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --model mc_dem --fit grains.youngs_modulus --rounds 2
   mcdem calibrate scenes/compression.toml --experiment DIR --discard 5 --out out/gamma
   mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --rounds 2
   mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --model hyperelastic_sphere"""
 
 
 SEARCH = {
-    "low": (0.5, "VALUE", at_least_zero, "Lower end of the search: gamma, or E divided by the scene's E"),
-    "high": (1.5, "VALUE", at_least_zero, "Upper end of the search: gamma, or E divided by the scene's E"),
-    "tolerance": (0.005, "ERROR", at_least_zero, "Stop at this standard error of gamma, or of E divided by the scene's E"),
-    "batch": (6, "N", whole_in(3, 10_000), "Number of values that are simulated together in one round"),
+    "low": (0.5, "VALUE", at_least_zero, "Lower end of the search: gamma, or E divided by the scene's E; not with --fit"),
+    "high": (1.5, "VALUE", at_least_zero, "Upper end of the search: gamma, or E divided by the scene's E; not with --fit"),
+    "tolerance": (0.005, "ERROR", at_least_zero, "Stop at this standard error of gamma, or of E divided by the scene's E; with --fit of each key over "
+                  "its value"),
+    "batch": (6, "N", whole_in(3, 10_000), "Number of values that are simulated together in one round; several keys: one, and two for each key"),
     "rounds": (8, "N", whole_in(1, 10_000), "Maximum number of rounds"),
 }
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
-    add_reference_options(parser, "--experiment", "Experiment folder or run whose mean top force at maximum compression is the target",
+    add_reference_options(parser, "--experiment", "Experiment folder or run whose mean top force at maximum compression, or with --fit its curves, are "
+                          "the target; may be repeated",
                           required=True)
-    parser.add_argument("--model", metavar="MODEL", default="mc_dem",
-                        help="mc_dem: fit gamma; any other contact model: fit Young's modulus of the grains")
-    parser.add_argument("--out", metavar="DIR", type=output_path, help="Folder for calibration.json")
+    parser.add_argument("--fit", metavar="KEY,..", type=names, action="extend", default=[],
+                        help="Keys to fit together, each also as KEY=LOW..HIGH (SI units)")
+    parser.add_argument("--compare", metavar="NAME,..", type=names, action="extend", default=[],
+                        help="With --fit: what to compare, of force, coordination, top_force, force@MM, unloading_force@MM, coordination@MM "
+                             "(MM: a displacement); default: force and coordination, or all of a programme")
+    parser.add_argument("--model", metavar="MODEL",
+                        help="mc_dem: fit gamma; any other contact model: fit Young's modulus of the grains (default: mc_dem). "
+                             "With --fit: the contact model, by default the scene's")
+    parser.add_argument("--out", metavar="DIR", type=output_path, help="Folder for calibration.json, with --fit also for the trials")
     add_device_option(parser)
     add_numbers(parser, SEARCH)
 
@@ -51,7 +75,11 @@ def run(options: argparse.Namespace) -> int:
     from ..json_text import json_text
     from ..observe.reference import load_reference
     from ..outputs import CALIBRATION, expect_replaceable, output_folder, replace_own
-    wanted = Options(calibrated_model(options.model, "--model"), SearchOptions(**given(options, SEARCH)), options.device)
+    if options.fit:
+        return _fit(options)
+    if options.compare:
+        raise InputError("--compare: is an option of --fit")
+    wanted = Options(calibrated_model(options.model or "mc_dem", "--model"), SearchOptions(**given(options, SEARCH)), options.device)
     reference = load_reference(options.experiment, options.setting, options.discard)
     scene = read_scene(options)
     with contextlib.ExitStack() as stack:
@@ -69,6 +97,39 @@ def run(options: argparse.Namespace) -> int:
             document = calibration_document(result, scene.text, reference.label)
             replace_own(file, CALIBRATION, json_text(document, sort_keys=True).encode())
             print(f"wrote {file}")
+    return 0
+
+
+def _fit(options: argparse.Namespace) -> int:
+    """Several keys."""
+    from ..calibration.calibrate import fit_document
+    from ..calibration.scene_fit import FitOptions, SceneFit, fit_scene
+    from ..json_text import json_text
+    from ..observe.reference import load_reference
+    from ..outputs import CALIBRATION, expect_replaceable, output_folder, remove_temporaries, replace_own
+    from ..report.scene_fit import fit_text, round_text
+    reference = load_reference(options.experiment, options.setting, options.discard)
+    scene = read_scene(options)
+    with contextlib.ExitStack() as stack:
+        folder = stack.enter_context(output_folder(options.out)) if options.out else None
+        if folder:
+            expect_replaceable(folder / "calibration.json", CALIBRATION)
+            remove_temporaries(folder / "trials")
+        wanted = FitOptions(options.fit, options.compare, options.model or "", options.tolerance, options.batch, options.rounds,
+                            options.device, folder / "trials" if folder else None)
+        kept = "trials are kept; run the same command again to continue" if folder else "nothing is kept; --out keeps trials"
+        with interruptible(kept), Progress() as progress:
+            def after_round(found: SceneFit) -> None:
+                progress.clear()
+                say(round_text(found))
+                if folder:
+                    document = fit_document(found, scene.text, reference.label)
+                    replace_own(folder / "calibration.json", CALIBRATION, json_text(document, sort_keys=True).encode())
+
+            result = fit_scene(scene, reference.replicas, wanted, progress.show, after_round)
+        print(fit_text(result))
+        if folder:
+            print(f"wrote {folder / 'calibration.json'}")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""Figures for print of runs, comparisons, diagnoses, convergence studies and challenges, drawn with matplotlib.
+"""Figures for print of runs, comparisons, diagnoses, what-if tables, convergence studies and challenges, drawn with matplotlib.
 
     axes = mcdem.figures.top_force("out/small")
     axes.set_xlim(0, 20)
@@ -18,11 +18,12 @@ from .diagnosis import how_far, where, which
 from .runs import figure_function
 from .style import COLUMN, PAGE, STYLE, new_axes, save
 from .values import read
+from .what_if import what_if
 
 globals().update({name: figure_function(name) for name in DEFINITIONS})
 
 __all__ = ["COLUMN", "PAGE", "STYLE", "confidence", "confusion", "convergence", "how_far", "new_axes", "power", "read", "save",
-           "where", "which", *DEFINITIONS]
+           "what_if", "where", "which", *DEFINITIONS]
 
 
 def __getattr__(name: str) -> Callable[..., Any]:  # for type checkers: the figures of runs are in no list here

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..look import Path
+from ..number_text import shortest
 from ..results import ContactModel, Recording, Run, read_run
 from ..results.folder import is_there
-from .replicas import DISCARD, Setting, group_by_setting, model_of
+from .replicas import DISCARD, THRESHOLD, Setting, group_by_setting, model_of
 
 if TYPE_CHECKING:
     from .. import _engine
@@ -50,8 +51,10 @@ def read_reference(path: Path, discard: int = 0, contacts: bool = False) -> Run:
     if not _is_measured(folder):
         return read_run(folder, contacts=contacts)
     from ..experiment.read import read_experiment
-    recording = read_experiment(folder).recording
-    recording = replace(recording, parameters=recording.parameters | {DISCARD: str(discard)})
+    experiment = read_experiment(folder)
+    recording = experiment.recording
+    recording = replace(recording, parameters=recording.parameters | {DISCARD: str(discard),
+                                                                      THRESHOLD: shortest(experiment.measurement.force_threshold)})
     return Run(recording.label, "", "", "", "", (recording,))
 
 

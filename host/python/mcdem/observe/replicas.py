@@ -8,7 +8,7 @@ from ..results.parameters import Parameters, keys_that_vary, value_of, without_q
 from ..results.recording import Recording, Run
 
 Replicas = Sequence[Recording]
-SEED, MODEL, DISCARD = "packing.seed", "contact.model", "protocol.discard"  # scene keys
+SEED, MODEL, DISCARD, THRESHOLD = "packing.seed", "contact.model", "protocol.discard", "protocol.force_threshold"  # scene keys
 
 
 @dataclass(frozen=True, eq=False)
