@@ -1,5 +1,6 @@
 """Reads tables of other programs and laboratories as named columns; their meaning and units are determined later."""
 import array
+import errno
 import gzip
 import zlib
 from collections.abc import Iterable, Sequence
@@ -91,6 +92,8 @@ def _bytes_of(file: str) -> bytes:
     try:
         there = is_file(file)
     except OSError as error:
+        if error.errno != errno.ENAMETOOLONG:
+            raise
         raise InputError(f"{file[:200]}: must be a table, got: {error.strerror}") from None
     if not there:
         got = "something that is not a file" if is_there(file) else "no such file"
