@@ -4,7 +4,7 @@ import numpy as np
 from mcdem._engine import Random
 from mcdem.diagnosis.evidence import CandidateRange, Evidence, NuisancePrior
 from mcdem.diagnosis.library import Library
-from mcdem.observe.grid import Grid, cells_of
+from mcdem.observe.grid import Grid, bins_of
 from mcdem.observe.observables import observables
 from mcdem.diagnosis.signature import Signature
 
@@ -13,7 +13,7 @@ GRID = Grid([0.004, 0.006, 0.008, 0.0098], 0.002, 0.01)
 
 
 def cells_that_need(what):
-    return np.array([float(observables()[cell.observable].needs == what) for cell in cells_of(GRID)])
+    return np.array([float(observables()[bin.observable].needs == what) for bin in bins_of(GRID)])
 
 
 def signature(name, linear):
@@ -22,7 +22,7 @@ def signature(name, linear):
 
 def evidence(adhesion=0.0, friction=0.0, modulus=0.0):
     """Noise of 1 between replicates and of 3 between packings. "adhesion" is visible only in observables that require positions,
-    "friction" only in the top force, "modulus" in every cell."""
+    "friction" only in the top force, "modulus" in every bin."""
     random = Random(7, "null_draws")
     in_positions, in_top = cells_that_need("positions"), cells_that_need("plate")
     everywhere = np.ones(len(in_top))

@@ -72,7 +72,7 @@ class SmallScenes(unittest.TestCase):
         return Study(scene, simulator, 0, Limits(), self.told).run()
 
     def beyond(self, made):
-        return {cause.cause for cause in made.causes if any(cell.beyond for cell in cause.errors)}
+        return {cause.cause for cause in made.causes if any(bin.beyond for bin in cause.errors)}
 
     def test_a_fast_plate_is_named_as_the_cause(self):
         """At 2 m/s the inertial number is 0.3."""
@@ -87,7 +87,7 @@ class SmallScenes(unittest.TestCase):
         self.assertEqual(self.stages[0], "the programme's displacements")
         self.assertIn("plate speed", self.beyond(made))
         self.assertIn("speeds of stages", made.words[1])
-        worst = max((cell for cell in made.causes[0].errors if cell.observable == "relaxation"), key=lambda cell: abs(cell.over_limit))
+        worst = max((bin for bin in made.causes[0].errors if bin.observable == "relaxation"), key=lambda bin: abs(bin.over_limit))
         self.assertGreater(worst.error, 2 * worst.standard_error, "grains at rest relax less than those that a plate has thrown")
         self.assertGreater(worst.mean, worst.error)
 
@@ -95,7 +95,7 @@ class SmallScenes(unittest.TestCase):
         """The force on the plate, which most other studies need, is then not an observable."""
         force = "\n[[programme]]\nforce = 1.0\nscans = 6\n"
         made = self.study(pressed({"plate.end": 0.03, "plate.speed": 0.3}, force))
-        observables = {cell.observable for cell in made.causes[0].errors}
+        observables = {bin.observable for bin in made.causes[0].errors}
         self.assertIn("displacement", observables)
         self.assertNotIn("top_force", observables)
 

@@ -6,11 +6,11 @@ from numpy.testing import assert_allclose
 
 from mcdem.convergence.convergence_types import RELATIVE, Limits
 from mcdem.convergence.errors import Baseline, cause_errors, errors_of, mean_and_error
-from mcdem.observe.grid import Grid, cells_of
+from mcdem.observe.grid import Grid, bins_of
 from mcdem.observe.observables import observables
 from mcdem.observe.estimate import mean_over_replicas
 
-CELLS = cells_of(Grid([0.01], 0.002, 0.02))
+BINS = bins_of(Grid([0.01], 0.002, 0.02))
 REPLICAS = 64
 
 
@@ -22,18 +22,18 @@ class Made:
 
     def __init__(self, remaining, error, chaos, left=lambda part: part):
         random = np.random.default_rng(7)
-        packing = random.normal(0, 0.1, (REPLICAS, len(CELLS)))
+        packing = random.normal(0, 0.1, (REPLICAS, len(BINS)))
         self.base = packing + error
         self.remaining = remaining
         self.refined = [packing + random.normal(0, chaos, packing.shape) + error * left(part) for part in remaining]
 
     def baseline(self):
-        return Baseline(CELLS, self.base, Limits())
+        return Baseline(BINS, self.base, Limits())
 
     def errors(self):
         return errors_of(self.base, self.remaining, self.refined)
 
-    def cells(self):
+    def bins(self):
         return cause_errors("plate speed", self.baseline(), self.errors()).errors
 
 
@@ -42,7 +42,7 @@ class Errors(unittest.TestCase):
         errors = Made([0.5, 0.25, 0.125], 0.03, 0.01).errors()
         self.assertTrue(errors.follows_order.all())
         missed = np.abs(errors.value - 0.03) > 2 * errors.standard_error
-        self.assertLess(missed.mean(), 0.15)  # two standard errors are exceeded by chance in 1 of 20 cells
+        self.assertLess(missed.mean(), 0.15)  # two standard errors are exceeded by chance in 1 of 20 bins
         self.assertGreater(missed.sum(), 0, "standard errors are no larger than the scatter")
 
     def test_of_another_order_are_lower_limits(self):
@@ -65,47 +65,47 @@ class Errors(unittest.TestCase):
         errors = made.errors()
         self.assertTrue((np.abs(errors.value - 0.03) < 5 * errors.standard_error).all())
 
-    def test_of_cells_without_values_are_left_out(self):
+    def test_of_bins_without_values_are_left_out(self):
         made = Made([0.5], 0.03, 0.001)
         made.base[:, 1] = np.nan
         made.refined[0][1:, 2] = np.nan  # one replica has no standard error
-        cells = made.cells()
-        self.assertEqual(len(cells), len(CELLS) - 1)
-        self.assertEqual((cells[1].observable, cells[1].phase), (observables()[1].name, "load"))
-        self.assertTrue(np.isnan(cells[1].standard_error) and not cells[1].beyond)
+        bins = made.bins()
+        self.assertEqual(len(bins), len(BINS) - 1)
+        self.assertEqual((bins[1].observable, bins[1].phase), (observables()[1].name, "load"))
+        self.assertTrue(np.isnan(bins[1].standard_error) and not bins[1].beyond)
 
 
 class Limited(unittest.TestCase):
     def test_only_large_and_significant_errors_are_beyond(self):
         for error, chaos, beyond in ((0.002, 1e-5, False), (0.2, 0.001, True), (0.2, 1.0, False)):
-            cells = Made([0.5], error, chaos).cells()
-            self.assertEqual({cell.beyond for cell in cells}, {beyond}, (error, chaos))
+            bins = Made([0.5], error, chaos).bins()
+            self.assertEqual({bin.beyond for bin in bins}, {beyond}, (error, chaos))
 
     def test_forces_relatively_and_all_else_in_standard_deviations(self):
-        for cell in Made([0.5], 0.01, 0.01).cells():
-            if cell.observable in RELATIVE:
-                self.assertEqual(cell.limit, 0.005)
+        for bin in Made([0.5], 0.01, 0.01).bins():
+            if bin.observable in RELATIVE:
+                self.assertEqual(bin.limit, 0.005)
             else:
-                self.assertAlmostEqual(cell.limit, 0.5 * 0.1, delta=0.02)  # the deviation of 64 replicas is known to 9 %
+                self.assertAlmostEqual(bin.limit, 0.5 * 0.1, delta=0.02)  # the deviation of 64 replicas is known to 9 %
 
     def test_a_difference_below_the_resolution_is_allowed(self):
         """If copies hardly rearrange, their scatter is tiny."""
         made = Made([0.5], 1e-4, 0)
         made.base[:], made.refined[0][:] = 1 + 1e-4, 1 + 0.5e-4
         resolution = {one.name: one.resolution for one in observables()}
-        for cell in made.cells():
-            if not cell.is_relative:
-                self.assertEqual((cell.limit, cell.beyond), (resolution[cell.observable], False))
+        for bin in made.bins():
+            if not bin.is_relative:
+                self.assertEqual((bin.limit, bin.beyond), (resolution[bin.observable], False))
 
     def test_replicas_hardly_differ_where_they_scatter_less_than_the_resolution(self):
         made = Made([0.5], 0.01, 0.01)
         self.assertFalse(made.baseline().hardly_differ())
-        made.base[:, :len(CELLS) // 2] = 1
-        self.assertFalse(made.baseline().hardly_differ(), "half of the cells scatter")
-        made.base[:, :len(CELLS) // 2 + 1] = 1
+        made.base[:, :len(BINS) // 2] = 1
+        self.assertFalse(made.baseline().hardly_differ(), "half of the bins scatter")
+        made.base[:, :len(BINS) // 2 + 1] = 1
         self.assertTrue(made.baseline().hardly_differ())
-        made.base[:, 1:len(CELLS) // 2 + 1] = np.nan
-        self.assertFalse(made.baseline().hardly_differ(), "unknown cells do not count")
+        made.base[:, 1:len(BINS) // 2 + 1] = np.nan
+        self.assertFalse(made.baseline().hardly_differ(), "unknown bins do not count")
 
 
 class Means(unittest.TestCase):

@@ -8,13 +8,13 @@ from refinements_test import PARAMETERS
 
 from mcdem.convergence.convergence_types import Limits
 from mcdem.convergence.converge import Study, converge
-from mcdem.observe.grid import Grid, cells_of
+from mcdem.observe.grid import Grid, bins_of
 from mcdem.observe.observables import observables
 from mcdem.errors import InputError
 
 GRID = Grid([0.01, 0.02], 0.002, 0.02)
-CELLS = cells_of(Grid([0.01, 0.02], 0.002, 0.02))
-FIRST = [observables()[cell.observable].name for cell in CELLS].index
+BINS = bins_of(Grid([0.01, 0.02], 0.002, 0.02))
+FIRST = [observables()[bin.observable].name for bin in BINS].index
 REPLICAS = 8
 
 
@@ -24,7 +24,7 @@ class Simulated:
     def __init__(self, scatter=0.1, draws_packings=True, grid=GRID):
         self.draws_packings, self.grid, self.drawn, self.asked, self.lost = draws_packings, grid, False, [], {}
         self._random = np.random.default_rng(3)
-        self.packing = self._random.normal(0, scatter, (REPLICAS, len(CELLS)))
+        self.packing = self._random.normal(0, scatter, (REPLICAS, len(BINS)))
 
     def find_grid(self, progress=None):
         return self.grid
@@ -33,8 +33,8 @@ class Simulated:
         progress(0.5)
         self.asked.append(dict(changes))
         observed = self.packing + changes.get("plate.speed", 0.1)
-        for (row, cell) in self.lost:
-            observed[row, cell] = np.nan
+        for (row, bin) in self.lost:
+            observed[row, bin] = np.nan
         return observed
 
     def draw_packings(self):
@@ -55,8 +55,8 @@ class Studies(unittest.TestCase):
                                                                 "list margin")])
         self.assertEqual((made.scene, made.replicas, made.copies, simulated.drawn), ("small", 8, "jittered copies of one packing", False))
         speed, *others = made.causes
-        self.assertEqual({round(cell.error, 12) for cell in speed.errors}, {0.1})
-        self.assertEqual({cell.error for cause in others for cell in cause.errors}, {0})
+        self.assertEqual({round(bin.error, 12) for bin in speed.errors}, {0.1})
+        self.assertEqual({bin.error for cause in others for bin in cause.errors}, {0})
         self.assertEqual(made.words[0], "Not converged.")
         self.assertRegex(made.words[1], "^plate speed: top_force is 10 .* within the limit with plate.speed = 0.1 / 20")
         self.assertEqual(made.words[2:], tuple(f"{cause}: no influence in these runs" for cause in ("inertia", "time step", "list margin")))

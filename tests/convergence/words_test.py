@@ -5,26 +5,26 @@ import unittest
 from dataclasses import replace
 
 from mcdem.convergence.convergence_json import convergence_json
-from mcdem.convergence.convergence_types import CauseErrors, CellError, Convergence, Limits
+from mcdem.convergence.convergence_types import CauseErrors, BinError, Convergence, Limits
 from mcdem.convergence.words import CONVERGED, NOT_CONVERGED, NOT_DECIDED, words_of_cause, words_of_result
 
 LIMITS = Limits(0.005, 0.5)
-SMALL = CellError("top_force", "load", 10.04, 1.5, 0.1, 0.001, 0.0005, True, 0.005, False)
+SMALL = BinError("top_force", "load", 10.04, 1.5, 0.1, 0.001, 0.0005, True, 0.005, False)
 FORCE = replace(SMALL, error=0.0131, standard_error=0.0021, beyond=True)
-COUNT = CellError("coordination_number", "unload", 4.2, 5.0, 0.2, -0.3, 0.04, False, 0.1, True)  # the limit is half of 0.2
+COUNT = BinError("coordination_number", "unload", 4.2, 5.0, 0.2, -0.3, 0.04, False, 0.1, True)  # the limit is half of 0.2
 UNSURE = replace(SMALL, standard_error=0.003)
 ZERO = replace(SMALL, error=0.0, standard_error=0.0)
 
 
-def errors(*cells):
-    return CauseErrors("plate speed", cells)
+def errors(*bins):
+    return CauseErrors("plate speed", bins)
 
 
 class OfACause(unittest.TestCase):
     def test_name_the_worst_error_and_its_remedy(self):
         remedy = "plate.speed = 0.1 / {factor:.2g}, or that / {square:.2g}"
         force = "top_force is 1.3 +- 0.2 % too high at 10.0 mm of loading"
-        for cells, remedy_words, said in (
+        for bins, remedy_words, said in (
                 ((SMALL, FORCE), "", force),
                 ((FORCE,), remedy, f"{force}; within the limit with plate.speed = 0.1 / 2.6, or that / 6.9"),
                 ((FORCE, COUNT), remedy, "coordination_number is at least 1.5 +- 0.2 sd too low at 4.2 mm of unloading, 2 values beyond "
@@ -34,14 +34,14 @@ class OfACause(unittest.TestCase):
                                           "use more --replicas"),
                 ((ZERO, replace(ZERO, standard_error=math.nan)), remedy, "no influence in these runs"),
                 ((), remedy, "no influence in these runs")):
-            self.assertEqual(words_of_cause(errors(*cells), remedy_words, LIMITS, 40), f"plate speed: {said}")
+            self.assertEqual(words_of_cause(errors(*bins), remedy_words, LIMITS, 40), f"plate speed: {said}")
 
 
 class OfTheResult(unittest.TestCase):
     def test_say_whether_it_is_converged(self):
         for causes, said in (((), CONVERGED), (((SMALL,), (ZERO,)), CONVERGED), (((SMALL,), (UNSURE,)), NOT_DECIDED),
                              (((UNSURE,), (SMALL, FORCE)), NOT_CONVERGED)):
-            self.assertEqual(words_of_result([errors(*cells) for cells in causes]), said)
+            self.assertEqual(words_of_result([errors(*bins) for bins in causes]), said)
 
 
 class Json(unittest.TestCase):

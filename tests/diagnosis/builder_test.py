@@ -9,7 +9,7 @@ from synthetic_evidence import Case
 from mcdem.diagnosis.builder import DiagnosisBuilder
 from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.diagnosis_types import Verdict
-from mcdem.observe.grid import cells_each
+from mcdem.observe.grid import bins_each
 from mcdem.observe.observables import observables
 
 
@@ -28,10 +28,10 @@ def diagnosed(evidence):
 
 
 def places(evidence):
-    """Observable and place of each cell."""
-    cell = np.arange(len(evidence.observed))
-    each = cells_each(len(cell))
-    return cell // each, cell % each
+    """Observable and place of each bin."""
+    bin = np.arange(len(evidence.observed))
+    each = bins_each(len(bin))
+    return bin // each, bin % each
 
 
 def runs_at(world, evidence, shift):
@@ -114,7 +114,7 @@ def where(differs, size, observables_known=10):
 
 def with_remainder(chosen, left):
     """Decides between an effect with the pattern of all differences and none, if the runs with the effect leave `left` at the chosen
-    cells."""
+    bins."""
     world, evidence, pattern = planted(6, 8)
     observable, place = places(evidence)
     evidence.observed += 9 * pattern + np.where(chosen(observable, place), np.where(observable % 2, left, -left), 0)
@@ -131,7 +131,7 @@ class Rearrangements(unittest.TestCase):
             return 2 * min(d.gap.p_omnibus, d.gap.p_directed)
 
         one = where(lambda _, place: place == 2, 5)
-        self.assertLess(smaller_p(one), 1e-3)  # all cells together
+        self.assertLess(smaller_p(one), 1e-3)  # all bins together
         self.assertGreater(one.gap.p_value, 0.01)
         self.assertEqual((one.verdict, one.where, one.explanation), (Verdict.no_gap, (), None))
         two = where(lambda _, place: (place == 2) | (place == 5), 5)
@@ -186,7 +186,7 @@ class Runs(unittest.TestCase):
         builder = built(evidence)
         fitted = builder.whole_fit(0).amplitudes[0]
         failed = runs_at(world, evidence, fitted * pattern)
-        failed[:, builder.data.cells[0]] = np.nan
+        failed[:, builder.data.bins[0]] = np.nan
         builder.confirm(0, failed)
         self.assertTrue(builder.refit(0))
         self.assertAlmostEqual(builder.whole_fit(0).amplitudes[0], fitted / 2, 12)

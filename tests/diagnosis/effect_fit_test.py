@@ -7,12 +7,12 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 from synthetic_evidence import SyntheticWorld
 
-from mcdem.diagnosis.effect_fit import Candidate, draw_error, fit_effect, fit_effects, lacking_cells
+from mcdem.diagnosis.effect_fit import Candidate, draw_error, fit_effect, fit_effects, lacking_bins
 from mcdem.diagnosis.gap_space import FreeParameter, GapSpace
 
 
 class Setting(unittest.TestCase):
-    """Sixteen cells with the noise of forty replicates, and an uncertain parameter."""
+    """Sixteen bins with the noise of forty replicates, and an uncertain parameter."""
 
     def setUp(self):
         self.world = SyntheticWorld(2, 1)
@@ -68,7 +68,7 @@ class Fits(Setting):
         fit = self.fit(self.world.noise(), -1, 1)
         self.assertEqual((fit.amplitude, fit.error, fit.score), (0, math.inf, 0))
 
-    def test_lacking_cells_are_left_out(self):
+    def test_lacking_bins_are_left_out(self):
         known = np.arange(16) >= 5
         gap = self.world.noise()
         of = Candidate(self.signature, -8, 8, np.flatnonzero(~known))
@@ -78,8 +78,8 @@ class Fits(Setting):
         fit = fit_effect(self.space, of, gap)
         self.assertAlmostEqual(fit.amplitude, l @ g / (l @ l), delta=1e-4)
         self.assertAlmostEqual(fit.error, 1 / np.linalg.norm(l), 9)
-        assert_array_equal(lacking_cells([of, Candidate(self.signature, 0, 1), replace(of, lacking=np.array([2, 9]))]), [0, 1, 2, 3, 4, 9])
-        self.assertEqual(len(lacking_cells([])), 0)
+        assert_array_equal(lacking_bins([of, Candidate(self.signature, 0, 1), replace(of, lacking=np.array([2, 9]))]), [0, 1, 2, 3, 4, 9])
+        self.assertEqual(len(lacking_bins([])), 0)
 
 
 class JointFits(Setting):

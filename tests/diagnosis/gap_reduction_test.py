@@ -9,7 +9,7 @@ from synthetic_evidence import GRID
 from mcdem.diagnosis.effect_fit import fit_effects
 from mcdem.diagnosis.gap_reduction import HeldOutTest, PartialFit, fit_part, gap_sizes, refit_part, whole_placebo
 from mcdem.diagnosis.gap_space import FreeParameter
-from mcdem.observe.grid import cells_of
+from mcdem.observe.grid import bins_of
 from mcdem.results.names import Phase
 
 
@@ -31,12 +31,12 @@ class Case(synthetic_evidence.Case):
 
 class Splits(unittest.TestCase):
     def test_the_first_part_of_loading_is_fitted(self):
-        case, cells = Case(0), cells_of(GRID)
+        case, bins = Case(0), bins_of(GRID)
         self.assertEqual(len(case.fitted) + len(case.held_out), 48)
         self.assertEqual(len(case.fitted), 6 * 3)  # three of four displacements are below 85 % of the stroke
-        for cell in case.fitted:
-            self.assertEqual(cells[cell].phase, Phase.load)
-            self.assertLess(cells[cell].displacement, 0.85 * GRID.stroke)
+        for bin in case.fitted:
+            self.assertEqual(bins[bin].phase, Phase.load)
+            self.assertLess(bins[bin].displacement, 0.85 * GRID.stroke)
 
 
 class GapSizes(unittest.TestCase):
@@ -44,7 +44,7 @@ class GapSizes(unittest.TestCase):
         case, draws = Case(0), 2000
         noise = case.world.noise
         gaps = np.array([noise() - noise() for _ in range(draws)])
-        # Thirty cells with a scatter of 2 sqrt 2: 0.4 over 2000 draws; variances from 32 replicates have an error of 0.25 per cell.
+        # Thirty bins with a scatter of 2 sqrt 2: 0.4 over 2000 draws; variances from 32 replicates have an error of 0.25 per bin.
         self.assertAlmostEqual(gap_sizes(case.data, case.held_out, gaps, 1).mean(), 0, delta=5)
         gaps += [noise() for _ in gaps]
         self.assertAlmostEqual(gap_sizes(case.data, case.held_out, gaps, 1, 1).mean(), 0, delta=8)
@@ -71,9 +71,9 @@ class Reductions(unittest.TestCase):
         self.assertTrue(case.test.gap().shows())
         self.assertLess(case.reduction(1).fraction, 0.3)  # another effect does not close it
 
-    def test_cells_that_an_effect_lacks_stay_as_they_are(self):
+    def test_bins_that_an_effect_lacks_stay_as_they_are(self):
         case = Case(4)
-        for lacking, low, high in ((case.data.cells[::2], 0.3, 0.7), (case.data.cells, 0, 0)):  # half of the cells, all with the same gap
+        for lacking, low, high in ((case.data.bins[::2], 0.3, 0.7), (case.data.bins, 0, 0)):  # half of the bins, all with the same gap
             case.data.candidates[0] = replace(case.data.candidates[0], lacking=lacking)
             self.assertTrue(low <= case.reduction(0).fraction <= high)
 
@@ -130,7 +130,7 @@ class Reductions(unittest.TestCase):
         self.assertTrue(both.interval[0] <= both.fraction <= both.interval[1])
         self.assertLess(case.reduction(0).fraction, 0.8)
         fit = case.fit(0, 1)
-        np.testing.assert_allclose(fit.amplitudes, [4, -3], atol=1.2)  # 18 correlated cells with noise 1: 0.3 each
+        np.testing.assert_allclose(fit.amplitudes, [4, -3], atol=1.2)  # 18 correlated bins with noise 1: 0.3 each
         self.assertEqual(len(fit.nuisances), 1)
 
     def test_of_noise_it_is_not_significant(self):

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from synthetic_evidence import SyntheticWorld
 
 from mcdem._engine import Random
-from mcdem.diagnosis.gap_space import FreeParameter, GapSpace, lacking_cells, resolutions, shrunk_covariance, usable_cells, without
+from mcdem.diagnosis.gap_space import FreeParameter, GapSpace, lacking_bins, resolutions, shrunk_covariance, usable_bins, without
 from mcdem.observe.observables import observables
 
 ALL = 8 * len(observables())
@@ -18,7 +18,7 @@ def noise_rows(rows, known, seed):
 
 
 def by_double_loop(x):
-    """Ledoit & Wolf 2004, as sums over rows and pairs of cells, for standardised columns."""
+    """Ledoit & Wolf 2004, as sums over rows and pairs of bins, for standardised columns."""
     n, p = x.shape
     sigma = np.sqrt((x**2).sum(axis=0) / n)
     z = x / sigma
@@ -50,15 +50,15 @@ class ShrunkCovariances(unittest.TestCase):
         assert_allclose(found.diagonal(), (x**2).sum(axis=0) / 5)  # variances are not changed
 
 
-class Cells(unittest.TestCase):
+class Bins(unittest.TestCase):
     def test_usable_ones_are_finite_in_all_rows_and_vary(self):
         world = SyntheticWorld(2, 8)
         baseline, observed = noise_rows(6, 2, 8), world.noise()
         effect, nuisance = (world.signature(name, world.pattern(1)) for name in ("adhesion", "modulus"))
         baseline[:, 2], baseline[3, 5] = 0.5, np.nan
         effect.curvature[7], nuisance.linear[9], observed[11] = np.nan, np.inf, np.nan
-        assert_array_equal(usable_cells(baseline, [effect, nuisance], observed), [0, 1, 3, 4, 6, 8, 10, 12, 13, 14, 15])
-        assert_array_equal(lacking_cells(effect), [7])
+        assert_array_equal(usable_bins(baseline, [effect, nuisance], observed), [0, 1, 3, 4, 6, 8, 10, 12, 13, 14, 15])
+        assert_array_equal(lacking_bins(effect), [7])
         assert_array_equal(without(np.array([1, 3, 4]), np.array([0, 3])), [1, 4])
 
     def test_resolutions_are_those_of_the_observables(self):
@@ -71,16 +71,16 @@ class GapSpaces(unittest.TestCase):
 
     def setUp(self):
         world = SyntheticWorld(2, 9)
-        self.cells, noise, extra = np.array([0, 2, 3, 5, 8, 9, 13]), noise_rows(20, 2, 10), np.linspace(0, 5, ALL)
+        self.bins, noise, extra = np.array([0, 2, 3, 5, 8, 9, 13]), noise_rows(20, 2, 10), np.linspace(0, 5, ALL)
         self.priors = np.array([1.5, 0.4])
         free = [FreeParameter(world.pattern(size), prior) for size, prior in zip((0.7, 2), self.priors)]
-        self.covariance = 1.25 * shrunk_covariance(noise[:, self.cells])
-        self.covariance += np.diag(resolutions(self.cells, ALL) ** 2 + extra[self.cells])
-        self.directions = np.array([one.direction[self.cells] for one in free]).T
+        self.covariance = 1.25 * shrunk_covariance(noise[:, self.bins])
+        self.covariance += np.diag(resolutions(self.bins, ALL) ** 2 + extra[self.bins])
+        self.directions = np.array([one.direction[self.bins] for one in free]).T
         self.total = self.covariance + self.directions @ np.diag(self.priors**2) @ self.directions.T
         self.gap = world.noise(2)
-        self.chosen = self.gap[self.cells]
-        self.space = GapSpace(noise, 4, self.cells, free, extra)
+        self.chosen = self.gap[self.bins]
+        self.space = GapSpace(noise, 4, self.bins, free, extra)
 
     def test_nuisances_are_marginalised(self):
         expected = self.chosen @ np.linalg.inv(self.total) @ self.chosen
@@ -96,9 +96,9 @@ class GapSpaces(unittest.TestCase):
         self.assertAlmostEqual(self.space.log_likelihood(self.gap), expected, 9)
 
     def test_log_likelihood_with_a_constant_direction(self):
-        cells, noise = np.arange(4), Random(5, "challenge").normals(50 * ALL).reshape(50, ALL)
-        space = GapSpace(noise, 4, cells, [FreeParameter(np.full(ALL, 2.0), 1.5)], np.full(ALL, 0.3))
-        covariance = 1.25 * shrunk_covariance(noise[:, :4]) + np.diag(resolutions(cells, ALL) ** 2 + 0.3) + (2 * 1.5) ** 2
+        bins, noise = np.arange(4), Random(5, "challenge").normals(50 * ALL).reshape(50, ALL)
+        space = GapSpace(noise, 4, bins, [FreeParameter(np.full(ALL, 2.0), 1.5)], np.full(ALL, 0.3))
+        covariance = 1.25 * shrunk_covariance(noise[:, :4]) + np.diag(resolutions(bins, ALL) ** 2 + 0.3) + (2 * 1.5) ** 2
         gap = np.linspace(0.5, 60, ALL)
         expected = -0.5 * (gap[:4] @ np.linalg.inv(covariance) @ gap[:4] + np.log(np.linalg.det(covariance)))
         self.assertAlmostEqual(space.log_likelihood(gap), expected, 9)
@@ -121,24 +121,24 @@ class GapSpaces(unittest.TestCase):
         for of in (self.space.whiten, self.space.log_likelihood, self.space.fit_nuisances, self.space.refitted):
             assert_allclose(of(gaps), [of(gap) for gap in gaps], rtol=1e-12)
 
-    def test_the_part_without_lacking_cells_has_their_rows_and_columns_removed(self):
+    def test_the_part_without_lacking_bins_has_their_rows_and_columns_removed(self):
         part = self.space.lacking(np.array([0, 1, 9]))
         kept = np.array([1, 2, 3, 4, 6])
-        assert_array_equal(part.cells, self.cells[kept])
+        assert_array_equal(part.bins, self.bins[kept])
         assert_array_equal(part.sigma, self.space.sigma[kept])
         expected = self.chosen[kept] @ np.linalg.inv(self.total[np.ix_(kept, kept)]) @ self.chosen[kept]
         self.assertAlmostEqual((part.whiten(self.gap) ** 2).sum() / expected, 1, 9)
         self.assertIs(self.space.lacking(np.array([0, 1, 9])), part)
         self.assertIs(self.space.lacking(np.array([1])), self.space)
 
-    def test_no_cells_tell_nothing(self):
-        for nothing in (self.space.lacking(self.cells), GapSpace(noise_rows(20, 2, 10), 4, self.cells[:0], [])):
+    def test_no_bins_tell_nothing(self):
+        for nothing in (self.space.lacking(self.bins), GapSpace(noise_rows(20, 2, 10), 4, self.bins[:0], [])):
             self.assertEqual(nothing.whiten(self.gap).shape, (0,))
             self.assertEqual(nothing.log_likelihood(self.gap), 0)
             assert_array_equal(nothing.fit_nuisances(self.gap), np.zeros(len(nothing.nuisance_errors())))
-        assert_allclose(self.space.lacking(self.cells).nuisance_errors(), self.priors)
+        assert_allclose(self.space.lacking(self.bins).nuisance_errors(), self.priors)
 
-    def test_square_of_whitened_noise_is_the_number_of_cells(self):
+    def test_square_of_whitened_noise_is_the_number_of_bins(self):
         world, draws = SyntheticWorld(2, 11), 3000
         noise = np.array([world.noise() for _ in range(2000)])
         free = FreeParameter(world.pattern(1), 2)

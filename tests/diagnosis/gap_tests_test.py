@@ -66,7 +66,7 @@ class FalseAlarms(unittest.TestCase):
             self.assertTrue(np.all((shares >= 0.005) & (shares <= 0.12)), (packings, shares))
 
     def test_p_is_uniform_with_the_fewest_replicates(self):
-        # The number of cells of a complete experiment.
+        # The number of bins of a complete experiment.
         p = p_of_experiments(1, 8, 0, known=20, seeds=range(700, 950))
         for level in (0.01, 0.05, 0.2, 0.5):
             error = math.sqrt(level * (1 - level) / len(p))
@@ -86,7 +86,7 @@ class Power(unittest.TestCase):
         self.assertGreaterEqual(claimed([0.01], 0.3, 0.6, 1.2)[0], 0.9)
 
     def test_for_a_planted_effect(self):
-        # 2.5 times a signature of 0.5 in each of 32 cells with noise 1: about 6 sigma without correlations.
+        # 2.5 times a signature of 0.5 in each of 32 bins with noise 1: about 6 sigma without correlations.
         omnibus, directed = (p_of_experiments(1, 32, 2.5) < 0.05).mean(axis=0)
         self.assertGreater(directed, 0.9)
         self.assertGreater(omnibus, 0.3)
@@ -109,7 +109,7 @@ class Statistics(unittest.TestCase):
         shift = float(space.fit_nuisances(data.gap + 3 * modulus)[0] - space.fit_nuisances(data.gap)[0])
         self.assertAlmostEqual(shift, 3, delta=0.2)
         refitted = gap - space.fit_nuisances(gap)[0] * modulus
-        np.testing.assert_allclose(s.highest_refitted, np.abs(refitted[data.cells] / space.sigma).max(), 1e-12)
+        np.testing.assert_allclose(s.highest_refitted, np.abs(refitted[data.bins] / space.sigma).max(), 1e-12)
 
     def test_of_many_gaps_are_those_of_each(self):
         world = SyntheticWorld(3, 1)
@@ -206,7 +206,7 @@ class GapData(unittest.TestCase):
         data = gap_data(evidence)
         self.assertAlmostEqual(data.gap[0], evidence.observed[0] - evidence.baseline[:, 0].mean(), 12)
         self.assertAlmostEqual(data.gap[4], evidence.observed[4] - 0.5 * (evidence.baseline[0, 4] + evidence.baseline[2, 4]), 12)
-        self.assertEqual(data.cells.tolist(), list(range(8)))
+        self.assertEqual(data.bins.tolist(), list(range(8)))
 
     def test_every_name_requires_a_signature(self):
         evidence = SyntheticWorld(1, 6).evidence(1, 8)

@@ -7,7 +7,7 @@ from synthetic_evidence import GRID, SyntheticWorld
 
 from mcdem.diagnosis.library import Library
 from mcdem.diagnosis.library_origin import expect_alike_loads, expect_library_of, expect_origin
-from mcdem.observe.grid import Grid, cells_of
+from mcdem.observe.grid import Grid, bins_of
 from mcdem.observe.observables import observables
 from mcdem.errors import InputError
 from mcdem.results.names import Phase
@@ -100,14 +100,14 @@ class Contents(unittest.TestCase):
 class Loads(unittest.TestCase):
     def test_packings_have_the_load_of_the_experiments(self):
         grid = Grid([0.01, 0.02], 0.005, 0.022)
-        names, cells = [observable.name for observable in observables()], cells_of(grid)
-        library = Library(grid, np.full((3, len(cells)), 0.5), [0] * 3)
+        names, bins = [observable.name for observable in observables()], bins_of(grid)
+        library = Library(grid, np.full((3, len(bins)), 0.5), [0] * 3)
 
         def at_times_the_load(times):
             baseline = library.baseline.copy()
-            for k, cell in enumerate(cells):
-                if names[cell.observable] == "top_force":
-                    baseline[:, k] += math.log(times) if cell.phase == Phase.load else 3
+            for k, bin in enumerate(bins):
+                if names[bin.observable] == "top_force":
+                    baseline[:, k] += math.log(times) if bin.phase == Phase.load else 3
             baseline[0, 0] = math.nan
             expect_alike_loads(library, baseline, "file.json")
 
@@ -120,7 +120,7 @@ class Loads(unittest.TestCase):
 
     def test_prescribed_forces_are_not_compared(self):
         grid = Grid([0.01, 0.02], 0.005, 0.022, [0.1, 0.2], 0.1)
-        forces = [observables()[cell.observable].name == "top_force" for cell in cells_of(grid)]
+        forces = [observables()[bin.observable].name == "top_force" for bin in bins_of(grid)]
         library = Library(grid, np.where(forces, math.nan, np.full((3, len(forces)), 0.5)), [0] * 3)  # not observed under given forces
         expect_alike_loads(library, library.baseline, "file.json")
 

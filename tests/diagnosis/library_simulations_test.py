@@ -10,24 +10,24 @@ from synthetic_evidence import GRID
 
 from mcdem.diagnosis.library import write_library
 from mcdem.diagnosis.library_simulations import build_library, fitting_library
-from mcdem.observe.grid import cells_of
+from mcdem.observe.grid import bins_of
 from mcdem.errors import InputError
 
-CELLS = len(cells_of(GRID))
+BINS = len(bins_of(GRID))
 # The last ones are parameters, of which one has the name of an effect.
 PROBES = ("force_bias", -0.1, 0.2), ("plate_tilt", -0.015, 0.015), ("modulus", -500, 500), ("friction", -0.01, 0.01)
 
 
 class KnownSimulations:
-    """As Simulations: two packings with three replicates, two of which are repeated with every probe. A probe changes a cell by
+    """As Simulations: two packings with three replicates, two of which are repeated with every probe. A probe changes a bin by
     linear a + curvature a^2."""
 
     device, origin = "a device", {"grains.friction": "0.03"}
 
     def __init__(self):
         random = np.random.default_rng(1)
-        self.runs = random.normal(size=(6, CELLS))
-        self.linear, self.curvature = random.normal(size=(2, len(PROBES), CELLS))
+        self.runs = random.normal(size=(6, BINS))
+        self.linear, self.curvature = random.normal(size=(2, len(PROBES), BINS))
         self.curvature[1:] = 0
         self.grid = GRID
         self.candidates = ["force_bias", "plate_tilt"]

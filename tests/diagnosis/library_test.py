@@ -24,7 +24,7 @@ def some_library():
     world.add_nuisance(evidence, "modulus", world.pattern(1 / 3), 1)
     library = evidence.library
     library.effects[0].curvature = world.pattern(1e-17)
-    library.effects[0].linear = world.noise()  # NaN beyond the first cells
+    library.effects[0].linear = world.noise()  # NaN beyond the first bins
     library.provenance = {"program": "0.1", "device": '"any" \N{GREEK SMALL LETTER MU}\t'}
     library.origin = {"grains.friction": "0.03", "box.size_x": "1"}
     holds = [HoldScans(3, 4, 5, "force", Phase.unload, 0.01 / 3)]

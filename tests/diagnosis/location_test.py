@@ -1,4 +1,4 @@
-"""A planted difference is located at its cells; replicates without a difference have none. location_test.py"""
+"""A planted difference is located at its bins; replicates without a difference have none. location_test.py"""
 import unittest
 
 import numpy as np
@@ -20,16 +20,16 @@ class Case(synthetic_evidence.Case):
     def locate(self, gap):
         return locate(self.space, self.data, self.null, gap, GRID, Limits(false_alarm=0.05))
 
-    def gap_of(self, cells):
+    def gap_of(self, bins):
         gap = np.full(len(self.data.mean), np.nan)
         gap[:self.world.known] = 0
-        for cell, value in cells.items():
-            gap[cell] = value
+        for bin, value in bins.items():
+            gap[bin] = value
         return gap
 
 
 class Locations(unittest.TestCase):
-    def test_planted_cells_and_their_range_are_found(self):
+    def test_planted_bins_and_their_range_are_found(self):
         world = Case()
         gap = world.gap_of({PLANTED: 8, PLANTED + 1: 10})
         entry, = world.locate(gap).entries
@@ -50,7 +50,7 @@ class Locations(unittest.TestCase):
 
     def test_the_largest_is_first(self):
         world = Case()
-        # The third one is not adjacent to the first: the cell between them has no difference.
+        # The third one is not adjacent to the first: the bin between them has no difference.
         entries = world.locate(world.gap_of({0: 8, 8: -12, 2: 9})).entries
         self.assertEqual(len(entries), 3)
         self.assertEqual(entries[0].observable, observables()[1].name)
@@ -59,18 +59,18 @@ class Locations(unittest.TestCase):
 
     def test_loading_and_unloading_are_separate(self):
         world = Case()
-        entries = world.locate(world.gap_of({3: 9, 4: 10})).entries  # neighbours in the list of cells
+        entries = world.locate(world.gap_of({3: 9, 4: 10})).entries  # neighbours in the list of bins
         self.assertEqual([entry.phase for entry in entries], ["unload", "load"])
 
-    def test_all_cells_are_listed(self):
+    def test_all_bins_are_listed(self):
         world = Case()
         found = world.locate(world.data.gap)
-        self.assertEqual(len(found.cells), 32)
-        cell = found.cells[PLANTED]
-        self.assertEqual((cell.observable, cell.phase, cell.displacement_mm), (observables()[2].name, "unload", 1e3 * GRID.displacement[1]))
-        self.assertAlmostEqual(cell.z_score, world.data.gap[PLANTED] / world.space.sigma[PLANTED], 12)
+        self.assertEqual(len(found.bins), 32)
+        bin = found.bins[PLANTED]
+        self.assertEqual((bin.observable, bin.phase, bin.displacement_mm), (observables()[2].name, "unload", 1e3 * GRID.displacement[1]))
+        self.assertAlmostEqual(bin.z_score, world.data.gap[PLANTED] / world.space.sigma[PLANTED], 12)
 
-    def test_replicates_have_no_significant_cells(self):
+    def test_replicates_have_no_significant_bins(self):
         alarms, draws = 0, 200
         for seed in range(10, 10 + draws):
             world = Case(seed)

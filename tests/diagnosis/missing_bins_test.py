@@ -29,7 +29,7 @@ class OfACandidate(unittest.TestCase):
     def test_leave_the_evidence_for_all_others_as_it_is(self):
         without, lacking = Case(), Case(lacking=1)
         without.evidence.candidates.pop()
-        np.testing.assert_array_equal(lacking.data.cells, without.data.cells)
+        np.testing.assert_array_equal(lacking.data.bins, without.data.bins)
         a, b = without.statistics, lacking.statistics
         self.assertEqual((a.omnibus, a.highest_refitted, a.fits[0]), (b.omnibus, b.highest_refitted, b.fits[0]))
         diagnosis = lacking.diagnosis()
@@ -85,7 +85,7 @@ class OfOthers(unittest.TestCase):
         # A parameter may shift a bin by any amount where its own change of it is not known.
         case = Case()
         case.parameters[0].linear[4:7] = np.nan
-        self.assertEqual(len(case.data.cells), 45)
+        self.assertEqual(len(case.data.bins), 45)
         self.assertEqual(case.diagnosis().missing_bins, (MissingBins("modulus", 3, 48, True),))
 
     def test_of_a_few_replicates_leave_out_these_replicates(self):
@@ -96,7 +96,7 @@ class OfOthers(unittest.TestCase):
         self.assertEqual(leave_out_failures(case.evidence), [
             "replicates: 2 of 16 runs of the scene as it stands lack values that the others have, and are left out of the noise"])
         np.testing.assert_array_equal(case.evidence.library.baseline, kept)
-        self.assertEqual(len(case.data.cells), 48)
+        self.assertEqual(len(case.data.bins), 48)
         self.assertEqual(case.diagnosis().verdict, Verdict.effect)
 
     def test_of_single_replicates_are_said(self):

@@ -24,7 +24,7 @@ def two_alike(world, apart, amplitude):
 
 
 def protocol_runs(world, apart):
-    """Eight runs of each effect. In a cell that the diagnosis does not have, their scatter is 1 and they differ by `apart`."""
+    """Eight runs of each effect. In a bin that the diagnosis does not have, their scatter is 1 and they differ by `apart`."""
     leader, rival = (np.array([world.noise(0.3) for _ in range(8)]) for _ in range(2))
     relaxation = world.known + 3
     leader[:, relaxation] = math.sqrt(7 / 8) * np.tile([1, -1], 4)
@@ -82,7 +82,7 @@ class NextSteps(unittest.TestCase):
 
     def test_power_of_a_protocol_follows_from_runs_of_both_effects(self):
         # A difference of n sigmas decides with the probability that a normal number exceeds margin / n - n / 2. The noise of the runs in
-        # the other cells changes the mean of a few draws by some per cent.
+        # the other bins changes the mean of a few draws by some per cent.
         power, expected = {apart: [] for apart in (0, 2, 3, 5)}, {apart: [] for apart in (0, 2, 3, 5)}
         for seed in range(70, 90):
             world = SyntheticWorld(6, seed)

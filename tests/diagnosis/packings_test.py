@@ -14,7 +14,7 @@ REPLICATES = 16
 
 
 def two_packings(first, second, seed, size=0.4):
-    """Two packings with the scatter of packings. "adhesion" acts on every cell of both, with the given amplitudes."""
+    """Two packings with the scatter of packings. "adhesion" acts on every bin of both, with the given amplitudes."""
     world = SyntheticWorld(6, seed)
     evidence = world.evidence(2, REPLICATES)
     world.add_effect(evidence, "adhesion", world.pattern(size))

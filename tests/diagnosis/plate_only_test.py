@@ -8,7 +8,7 @@ from mcdem.diagnosis.builder import DiagnosisBuilder
 from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.diagnosis_types import Verdict
 from mcdem.diagnosis.not_measured import not_measured
-from mcdem.observe.grid import cells_of
+from mcdem.observe.grid import bins_of
 from mcdem.errors import InputError
 
 
@@ -28,9 +28,9 @@ def diagnosed(shift, seed):
 
 class PlateOnly(unittest.TestCase):
     def test_missing_files_are_named(self):
-        observed = np.full(len(cells_of(GRID)), np.nan)
-        for cell, files in ((0, ["contacts.csv: ", "grains.csv beyond frame 0"]), (8, ["grains.csv beyond frame 0"]), (8 * 13, [])):
-            observed[cell] = 1  # top_force, floor_force, section_load
+        observed = np.full(len(bins_of(GRID)), np.nan)
+        for bin, files in ((0, ["contacts.csv: ", "grains.csv beyond frame 0"]), (8, ["grains.csv beyond frame 0"]), (8 * 13, [])):
+            observed[bin] = 1  # top_force, floor_force, section_load
             told = list(not_measured(observed, GRID))
             self.assertEqual(len(told), len(files))
             for text, file in zip(told, files):
@@ -45,7 +45,7 @@ class PlateOnly(unittest.TestCase):
             with self.subTest(seed):
                 d = diagnosed(9, seed)
                 self.assertTrue(d.gap.detected)
-                self.assertNotEqual(d.verdict, Verdict.effect)  # with eight cells a placebo may be as good
+                self.assertNotEqual(d.verdict, Verdict.effect)  # with eight bins a placebo may be as good
                 first, second = d.ranking
                 self.assertAlmostEqual(first.confidence, second.confidence, 3)
                 groups.append({cause.effect for cause in d.causes})
@@ -58,7 +58,7 @@ class PlateOnly(unittest.TestCase):
         self.assertGreater(limit.absorbed_by_calibration, 0.5)
         self.assertIn("modulus", limit.group)
 
-    def test_a_few_cells_are_required(self):
+    def test_a_few_bins_are_required(self):
         evidence = plate_evidence(0, 1)
         evidence.observed[:5] = np.nan
         with self.assertRaisesRegex(InputError, "have 3 observations in common, and 4 are needed"):

@@ -77,7 +77,7 @@ class Proposals(unittest.TestCase):
             statistics = replace(case.statistics, fits=fits + scored(50 - behind), directed=50)
             self.assertEqual(case.singles(statistics), singles)
 
-    def test_the_nearest_numerics_and_the_nearest_that_lacks_cells_are_tried(self):
+    def test_the_nearest_numerics_and_the_nearest_that_lacks_bins_are_tried(self):
         case = Case(4)
         gain = case.statistics.directed
         fits = scored(gain, gain - 1, gain - 2, gain - 3, 0)
@@ -141,7 +141,7 @@ class Confirmation(unittest.TestCase):
     def test_failed_runs_are_excluded(self):
         failed = self.case.runs(4 * self.case.linear[FRICTION], 4)
         whole = failed[[0, 1, 3]]
-        failed[2, self.case.data.cells[-1]] = np.nan
+        failed[2, self.case.data.bins[-1]] = np.nan
         (a, step), (b, other) = (self.case.confirmed(self.first, runs) for runs in (failed, whole))
         self.assertEqual((a.confirmed_gain, a.confirmed_misfit_p), (b.confirmed_gain, b.confirmed_misfit_p))
         np.testing.assert_array_equal(step, other)

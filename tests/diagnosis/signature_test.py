@@ -20,8 +20,8 @@ def pairs_of(a, pairs=4):
     return np.tile(parabola(a), (pairs, 1))
 
 
-def noise(pairs, cells, seed):
-    return Random(seed, "challenge").normals(pairs * cells).reshape(pairs, cells)
+def noise(pairs, bins, seed):
+    return Random(seed, "challenge").normals(pairs * bins).reshape(pairs, bins)
 
 
 class Signatures(unittest.TestCase):
@@ -44,8 +44,8 @@ class Signatures(unittest.TestCase):
         assert_allclose(s.spread(), 0)
 
     def test_noise_is_shrunk_to_zero(self):
-        cells, pairs = 2000, 8
-        s = learn_signature("", -1, 1, noise(pairs, cells, 1), noise(pairs, cells, 2))
+        bins, pairs = 2000, 8
+        s = learn_signature("", -1, 1, noise(pairs, bins, 1), noise(pairs, bins, 2))
         # 68 % of normal means are below one of their known error; with the error from 8 pairs, 65 %.
         self.assertAlmostEqual(np.mean(s.curvature == 0), 0.65, delta=0.05)
         self.assertGreater(np.mean(s.linear == 0), 0.4)
@@ -90,7 +90,7 @@ class MissingValues(unittest.TestCase):
         first[:3] = NAN
         self.assertFalse(np.isfinite(learn_signature("adhesion", 0.5, 1, first, second).linear).any())
 
-    def test_a_cell_without_a_value_at_one_amplitude_is_a_straight_line_through_the_other(self):
+    def test_a_bin_without_a_value_at_one_amplitude_is_a_straight_line_through_the_other(self):
         """A force whose logarithm is observed may vanish with the larger amplitude, in some bins and pairs only."""
         first, second = pairs_of(0.5), pairs_of(1)
         second[2, 1] = first[0, 2] = NAN

@@ -13,7 +13,7 @@ from mcdem.diagnosis.plate_motion import neglected_motion
 from mcdem.diagnosis.simulations import Simulations
 from mcdem.experiment.experiment import Experiment
 from mcdem.experiment.instrument import Instrument
-from mcdem.observe.grid import cells_of
+from mcdem.observe.grid import bins_of
 from mcdem.observe.observables import index_of, observables
 from mcdem.results.names import Phase
 
@@ -33,7 +33,7 @@ class Libraries(unittest.TestCase):
         probes = plan.probes()
         self.assertEqual([one.name for one in probes], ["force_bias", "plate_tilt", "modulus", "strain_offset"])
         self.assertEqual((probes[1].amplitudes, probes[2].amplitudes), ((-0.015, 0.015), (-0.05, 0.05)))
-        self.assertEqual(rows.shape, (3 + 4 * 4, len(cells_of(self.small.comparison.grid))))
+        self.assertEqual(rows.shape, (3 + 4 * 4, len(bins_of(self.small.comparison.grid))))
         np.testing.assert_array_equal(rows[3:7, 0], np.tile(rows[:2, 0], 2), "the plate's force is not a contact force")
         # ln F of the plate increases by one with ln E, except for rearrangements.
         self.assertGreater((rows[13:15, 1] - rows[11:13, 1]).mean(), 0.3 * 2 * 0.05)
@@ -164,7 +164,7 @@ class OtherProtocols(unittest.TestCase):
         self.assertEqual(np.argwhere(np.isfinite(held[relaxation])).tolist(), [[Phase.load, 1]])  # the last displacement
         self.assertGreater(held[relaxation, 0, 1], rigid[relaxation, 0, 1] + 0.1)
 
-    def test_one_more_cycle_has_the_cells_of_one(self):
+    def test_one_more_cycle_has_the_bins_of_one(self):
         simulations, what = self.simulations()
         self.assertEqual(what[1], "press one more cycle")
         one, two = (self.observed(simulations, protocol, [("plasticity", 0.3)]) for protocol in (None, 1))

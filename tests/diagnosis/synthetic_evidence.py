@@ -10,17 +10,17 @@ from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.evidence import CandidateRange, Evidence, NuisancePrior, gap_data
 from mcdem.diagnosis.gap_tests import NullDistribution, gap_statistics
 from mcdem.diagnosis.library import Library
-from mcdem.observe.grid import Grid, cells_of
+from mcdem.observe.grid import Grid, bins_of
 from mcdem.diagnosis.signature import Signature
 
-GRID = Grid([0.0126, 0.0183, 0.0240, 0.0294], 0.0036, 0.03)  # eight cells of each observable
+GRID = Grid([0.0126, 0.0183, 0.0240, 0.0294], 0.0036, 0.03)  # eight bins of each observable
 
 
 class SyntheticWorld:
-    """Cells of the first `observables_known` observables have values; the noise of adjacent cells is correlated."""
+    """Bins of the first `observables_known` observables have values; the noise of adjacent bins is correlated."""
 
     def __init__(self, observables_known, seed):
-        self.cells = len(cells_of(GRID))
+        self.bins = len(bins_of(GRID))
         self.known = 8 * observables_known
         self.random = Random(seed, "challenge")
 
@@ -28,26 +28,26 @@ class SyntheticWorld:
         return float(self.random.normals(1)[0])
 
     def noise(self, size=1.0):
-        """Variance 1, correlation 1/2 between adjacent cells; NaN for unknown cells. (all cells,)"""
+        """Variance 1, correlation 1/2 between adjacent bins; NaN for unknown bins. (all bins,)"""
         drawn = self.random.normals(self.known).tolist()
         values = drawn[:1]
         for number in drawn[1:]:
             values.append(0.5 * values[-1] + math.sqrt(0.75) * number)
-        return size * np.append(values, np.full(self.cells - self.known, np.nan))
+        return size * np.append(values, np.full(self.bins - self.known, np.nan))
 
     def pattern(self, size):
-        """`size` at each cell, with random signs."""
-        values = np.zeros(self.cells)
+        """`size` at each bin, with random signs."""
+        values = np.zeros(self.bins)
         values[: self.known] = [-size if self.random.uniform() < 0.5 else size for _ in range(self.known)]
         return values
 
     def signature(self, name, linear):
-        return Signature(name, 10, np.array(linear), np.zeros(self.cells), np.tile(linear, (8, 1)))
+        return Signature(name, 10, np.array(linear), np.zeros(self.bins), np.tile(linear, (8, 1)))
 
     def evidence(self, packings, replicates, packing_scatter=3.0):
         """Replicates of packings that differ by `packing_scatter`. The last packing is that of the experiment; its replicates are the
         baseline, and the observation is one more of them. No candidates."""
-        baseline = np.empty((packings * replicates, self.cells))
+        baseline = np.empty((packings * replicates, self.bins))
         for p in range(packings):
             centre = self.noise(packing_scatter)
             for r in range(replicates):

@@ -81,8 +81,8 @@ class Trials(unittest.TestCase):
         np.testing.assert_allclose(seen, row, atol=1e-4)  # positions are stored as floats: 1e-8 m
         self.assertEqual(self.calls_of(kept)[0], 0)
 
-    def test_end_when_no_cell_needs_more_scans(self):
-        """The scan at 3.3 mm while unloading is the first that no cell needs."""
+    def test_end_when_no_bin_needs_more_scans(self):
+        """The scan at 3.3 mm while unloading is the first that no bin needs."""
         narrow = replace(self.small.comparison, grid=replace(self.small.comparison.grid, width=0.003))
         ended, row = self.calls_of(self.small.trial(1), comparison=narrow)
         fresh = Small(self)

@@ -112,7 +112,7 @@ class Verdicts(Case):
         self.expect(told, "no_gap")
         self.assertIn("contacts.csv", json.dumps(told["not_measured"]))
         self.assertEqual([file.name for file in (self.folder / "d").iterdir() if file.suffix in (".png", ".pdf", ".svg")], [])
-        self.assertEqual({cell["observable"] for cell in told["cells"]}, {"top_force"})
+        self.assertEqual({bin["observable"] for bin in told["cells"]}, {"top_force"})
 
     def test_a_candidate_whose_runs_fail_affects_only_itself(self):
         """Without any of the surface displacements free surfaces move too far, and the runs stop. The smallest accepted numbers of

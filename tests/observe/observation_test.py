@@ -1,4 +1,4 @@
-"""Recordings as vectors: local linear regression through the scans near a cell, grids, holds. observation_test.py"""
+"""Recordings as vectors: local linear regression through the scans near a bin, grids, holds. observation_test.py"""
 import math
 import unittest
 
@@ -8,7 +8,7 @@ from mcdem._engine import programme_parameters
 from scans_by_hand import SOFT, Lattice
 from synthetic import scans
 
-from mcdem.observe.grid import Grid, HoldScans, cells_of, grid_of
+from mcdem.observe.grid import Grid, HoldScans, bins_of, grid_of
 from mcdem.observe.observables import index_of, observables
 from mcdem.observe.observation import observe, scan_observables
 from mcdem.results import Box, Contacts, Phase, Recording, Wall
@@ -31,7 +31,7 @@ def recording_of(rows, parameters=()):
 def top_forces(recording, discard=0):
     """Top force while loading at both displacements, then while unloading."""
     values = observe(recording, GRID, SOFT, discard)
-    assert len(values) == len(cells_of(GRID)) and np.isnan(values[4:]).all()
+    assert len(values) == len(bins_of(GRID)) and np.isnan(values[4:]).all()
     return values[:4]
 
 
@@ -69,12 +69,12 @@ class LocalLines(unittest.TestCase):
         self.assertAlmostEqual(top_forces(recording)[1], 2 + 4, 9)
 
 
-class Cells(unittest.TestCase):
+class Bins(unittest.TestCase):
     def test_are_ordered_by_observable_then_phase_then_displacement(self):
-        cells = cells_of(GRID)
-        self.assertEqual(len(cells), 4 * len(observables()))
-        for k, cell in enumerate(cells):
-            self.assertEqual((cell.observable, cell.phase, cell.displacement), (k // 4, Phase.load if k % 4 < 2 else UP, GRID.displacement[k % 2]))
+        bins = bins_of(GRID)
+        self.assertEqual(len(bins), 4 * len(observables()))
+        for k, bin in enumerate(bins):
+            self.assertEqual((bin.observable, bin.phase, bin.displacement), (k // 4, Phase.load if k % 4 < 2 else UP, GRID.displacement[k % 2]))
 
     def test_have_the_observables_of_their_scans(self):
         lattice = Lattice(5)
@@ -118,12 +118,12 @@ def held(keep, scans_at="3"):
 
 
 def values_of(recording, grid, name):
-    """Cells of one observable: loading at all displacements, then unloading."""
+    """Bins of one observable: loading at all displacements, then unloading."""
     return observe(recording, grid, SOFT).reshape(len(observables()), -1)[index_of(name)]
 
 
 class Programmes(unittest.TestCase):
-    def test_a_hold_of_the_position_shows_relaxation_in_its_cell(self):
+    def test_a_hold_of_the_position_shows_relaxation_in_its_bin(self):
         recording = recording_of(*held("position"))
         grid = grid_of(recording)
         self.assertEqual(grid.holds, [HoldScans(3, 4, 5, "position", Phase.load, grid.holds[0].displacement)])

@@ -2,7 +2,7 @@
 import dataclasses
 import unittest
 
-from mcdem.convergence.convergence_types import CauseErrors, CellError, Convergence, Limits
+from mcdem.convergence.convergence_types import CauseErrors, BinError, Convergence, Limits
 from mcdem.observe.observables import observables
 from mcdem.report.convergence import convergence_figure_values, table_of_convergence
 from mcdem.report.text_table import to_text
@@ -12,17 +12,17 @@ OBSERVABLES = [one.name for one in observables()]
 
 def example():
     """Two causes: the first makes the top force 2 % too large while loading at 10 mm; everything else is within limits."""
-    def cell(name, error, standard_error, beyond=False):
+    def bin(name, error, standard_error, beyond=False):
         limit = {"top_force": 0.005, "mean_force": 0.005}.get(name, 0.05)
-        return CellError(name, "load", 10.0, 1.0, 0.1, error, standard_error, True, limit, beyond)
+        return BinError(name, "load", 10.0, 1.0, 0.1, error, standard_error, True, limit, beyond)
 
-    def cells(error, standard_error):
-        return [cell(name, error, standard_error) for name in OBSERVABLES for _ in range(4)]
+    def bins(error, standard_error):
+        return [bin(name, error, standard_error) for name in OBSERVABLES for _ in range(4)]
 
-    speed = cells(0.001, 0.0005)
-    speed[0] = cell("top_force", 0.02, 0.002, True)
-    margin = cells(-0.0005, 0.0005)
-    margin[2] = cell("top_force", -0.0009, 0.0005)  # the largest of this cause
+    speed = bins(0.001, 0.0005)
+    speed[0] = bin("top_force", 0.02, 0.002, True)
+    margin = bins(-0.0005, 0.0005)
+    margin[2] = bin("top_force", -0.0009, 0.0005)  # the largest of this cause
     return Convergence("small", 32, "jittered copies of one packing", ("Not converged.",), Limits(0.005, 0.5),
                        (CauseErrors("plate speed", tuple(speed)), CauseErrors("list margin", tuple(margin))), 1.0)
 

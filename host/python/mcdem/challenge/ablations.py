@@ -11,7 +11,7 @@ from ..diagnosis.diagnosis_types import Verdict
 from ..diagnosis.effect_fit import fit_effect
 from ..diagnosis.evidence import MAX_FOLDS, Evidence, GapData, gap_data
 from ..diagnosis.gap_space import GapSpace
-from ..observe.grid import cells_of
+from ..observe.grid import bins_of
 from ..observe.observables import observables
 from ..errors import InputError
 from .merits import Answer
@@ -34,8 +34,8 @@ class SimplerMethod:
 
 
 def _observing_only(evidence: Evidence, *needs: str) -> Evidence:
-    """Without the observations in the cells of other observables."""
-    wanted = [observables()[cell.observable].needs in needs for cell in cells_of(evidence.library.grid)]
+    """Without the observations in the bins of other observables."""
+    wanted = [observables()[bin.observable].needs in needs for bin in bins_of(evidence.library.grid)]
     return replace(evidence, observed=np.where(wanted, evidence.observed, np.nan))
 
 
@@ -63,19 +63,19 @@ def _best_effect(space: GapSpace, data: GapData) -> tuple[str, float, float]:
 
 
 def _smallest_residual(evidence: Evidence) -> Answer:
-    """Least squares in units of the scatter of each cell, without covariance and nuisances; always names an effect."""
+    """Least squares in units of the scatter of each bin, without covariance and nuisances; always names an effect."""
     data = gap_data(evidence)
-    count, rows = len(data.cells), len(data.noise)
+    count, rows = len(data.bins), len(data.noise)
     independent = np.zeros((count, data.noise.shape[1]))
-    independent[np.arange(count), data.cells] = np.linalg.norm(data.noise[:, data.cells], axis=0) * math.sqrt(count / rows)
-    return Answer(Verdict.effect, (_best_effect(GapSpace(independent, 0, data.cells, []), data)[0],), 1)
+    independent[np.arange(count), data.bins] = np.linalg.norm(data.noise[:, data.bins], axis=0) * math.sqrt(count / rows)
+    return Answer(Verdict.effect, (_best_effect(GapSpace(independent, 0, data.bins, []), data)[0],), 1)
 
 
 def _bayesian_information(evidence: Evidence) -> Answer:
     """Schwarz 1978: an effect is accepted if it justifies its parameter; the method cannot abstain."""
     data = gap_data(evidence)
-    name, gain, confidence = _best_effect(GapSpace(data.noise, len(evidence.baseline), data.cells, data.free), data)
-    return Answer(Verdict.effect, (name,), confidence) if 2 * gain > math.log(max(1, len(data.cells))) else Answer()
+    name, gain, confidence = _best_effect(GapSpace(data.noise, len(evidence.baseline), data.bins, data.free), data)
+    return Answer(Verdict.effect, (name,), confidence) if 2 * gain > math.log(max(1, len(data.bins))) else Answer()
 
 
 ABLATIONS = (

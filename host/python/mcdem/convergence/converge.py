@@ -9,7 +9,7 @@ import numpy as np
 from .._engine import Scene
 from ..errors import InputError
 from ..look import Path
-from ..observe.grid import Cell, Grid, cells_of
+from ..observe.grid import Bin, Grid, bins_of
 from ..observe.observables import observables
 from ..outputs import CONVERGENCE, expect_replaceable, output_folder, remove_temporaries
 from ..results.recording import Floats
@@ -67,36 +67,36 @@ class Study:
         scene itself stop, RunError, KeyboardInterrupt."""
         begin = time.monotonic()
         grid = self._simulator.find_grid(self._stage("the programme's displacements"))
-        cells = cells_of(grid)
-        first = _first_compared(cells, grid)
-        baseline, copies = self._baseline(cells, first)
+        bins = bins_of(grid)
+        first = _first_compared(bins, grid)
+        baseline, copies = self._baseline(bins, first)
         causes, words = [], []
         for refinement in refinements_of(self._scene.parameters[0]):
             errors = cause_errors(refinement.cause, baseline, self._errors(baseline.observed, refinement))
             causes.append(errors)
-            words.append(words_of_cause(errors, refinement.remedy, self._limits, len(cells)))
+            words.append(words_of_cause(errors, refinement.remedy, self._limits, len(bins)))
         return Convergence(self._scene.name, len(baseline.observed), copies, (words_of_result(causes), *words), self._limits, tuple(causes),
                            time.monotonic() - begin)
 
-    def _baseline(self, cells: list[Cell], first: int) -> tuple[Baseline, str]:
+    def _baseline(self, bins: list[Bin], first: int) -> tuple[Baseline, str]:
         """The scene's replicas, and a description of them."""
         copies = "jittered copies of one packing"
-        baseline = self._observed_scene("the scene as it stands", cells, first)
+        baseline = self._observed_scene("the scene as it stands", bins, first)
         if self._jitter or not baseline.hardly_differ():
             return baseline, copies
         if not self._simulator.draws_packings:
             return baseline, f"{copies}, which hardly differ; a packing.file has no random copies: a larger --jitter makes them"
         self._simulator.draw_packings()
-        return (self._observed_scene("new random packings", cells, first),
+        return (self._observed_scene("new random packings", bins, first),
                 "new random packings, because jittered copies of one hardly differ")
 
-    def _observed_scene(self, stage: str, cells: list[Cell], first: int) -> Baseline:
+    def _observed_scene(self, stage: str, bins: list[Bin], first: int) -> Baseline:
         observed = self._observe(stage, {})
         runs = np.count_nonzero(~np.isnan(observed[:, first]))
         if runs < FEWEST_RUNS:
             raise InputError(f"{self._scene.name}: {runs} of {len(observed)} replicas reach the first compared displacement with a force "
                              f"on the plate, and {FEWEST_RUNS} are needed: `mcdem run` with the same settings says why")
-        return Baseline(cells, observed, self._limits)
+        return Baseline(bins, observed, self._limits)
 
     def _errors(self, base: Floats, refinement: Refinement) -> Errors:
         return errors_of(base, [step.remaining for step in refinement.steps],
@@ -109,7 +109,7 @@ class Study:
         return lambda fraction: self._progress(name, fraction)
 
 
-def _first_compared(cells: list[Cell], grid: Grid) -> int:
-    """The first cell of what the plate does not prescribe: of the force, or of the displacement where the programme sets forces."""
+def _first_compared(bins: list[Bin], grid: Grid) -> int:
+    """The first bin of what the plate does not prescribe: of the force, or of the displacement where the programme sets forces."""
     name = "displacement" if grid.force else "top_force"
-    return next(k for k, cell in enumerate(cells) if observables()[cell.observable].name == name)
+    return next(k for k, bin in enumerate(bins) if observables()[bin.observable].name == name)

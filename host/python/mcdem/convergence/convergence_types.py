@@ -13,7 +13,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class CellError:
+class BinError:
     """Error of an observable at one phase and displacement: the scene minus the limit of infinitely fine numerics.
 
     `mean` and `standard_deviation` are those of the scene's replicas. All but the displacement is in units of the observable.
@@ -44,7 +44,7 @@ class CauseErrors:
     """Errors from one cause; those that are unknown are left out."""
 
     cause: str  # "plate speed"
-    errors: tuple[CellError, ...]
+    errors: tuple[BinError, ...]
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,6 @@ class Convergence:
     seconds: float
 
 
-def unit_of(cell: CellError, limits: Limits) -> tuple[float, str]:
+def unit_of(bin: BinError, limits: Limits) -> tuple[float, str]:
     """The unit in which an error is shown: per cent for forces, otherwise the standard deviation of one packing's replicates."""
-    return (0.01, "%") if cell.is_relative else (cell.limit / limits.deviations, "sd")
+    return (0.01, "%") if bin.is_relative else (bin.limit / limits.deviations, "sd")

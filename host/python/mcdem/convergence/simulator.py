@@ -62,7 +62,7 @@ class Simulator:
         return self.grid
 
     def observe(self, changes: Mapping[str, Any], progress: Progress | None = None) -> Floats:
-        """(copies, cells) of the scene with these values of keys; NaN where a simulation failed. Raises InputError."""
+        """(copies, bins) of the scene with these values of keys; NaN where a simulation failed. Raises InputError."""
         model = self._model(self._scene._changed(dict(changes)))
         return self._observer(model).observe(self._trials(model), progress)
 

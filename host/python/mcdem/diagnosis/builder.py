@@ -11,13 +11,13 @@ from .diagnosis_types import Diagnosis, Explanation, Gap, GapReduction, Nuisance
 from .effects import is_numerical
 from .evidence import Evidence, GapData, gap_data
 from .gap_reduction import FITTED_PART, HeldOutTest, PartialFit, fit_part, refit_part, stepped, whole_placebo
-from .gap_space import CellChoice, without
+from .gap_space import BinChoice, without
 from .gap_tests import NullDistribution, gap_statistics
 from .location import locate
 from .next_steps import ProtocolRuns, next_measurements, power_of_protocol
 from .not_measured import not_measured
-from ..observe.grid import cells_of
-from ..observe.observation import MIN_CELLS
+from ..observe.grid import bins_of
+from ..observe.observation import MIN_BINS
 from .packings import packing_agreements
 from .proposals import confirm, propose, whole_runs
 from .rearrangements import PlaceLeftOut, p_of_gap, p_without_one_place, places_left_out, without_place
@@ -31,7 +31,7 @@ class _Runs:
     """The runs of a proposal that explain most, and their parameters."""
 
     fit: PartialFit
-    mean: Floats  # (all cells,)
+    mean: Floats  # (all bins,)
     count: int
 
 
@@ -47,8 +47,8 @@ class _Tried:
 
 def _checked_data(evidence: Evidence) -> GapData:
     data = gap_data(evidence)
-    if len(data.cells) < MIN_CELLS:
-        raise InputError(f"the experiment and the simulations have {len(data.cells)} observations in common, and {MIN_CELLS} are needed: "
+    if len(data.bins) < MIN_BINS:
+        raise InputError(f"the experiment and the simulations have {len(data.bins)} observations in common, and {MIN_BINS} are needed: "
                          "the plate must press the packing within its stroke in both")
     return data
 
@@ -62,7 +62,7 @@ class DiagnosisBuilder:
         while (k := builder.wants_held_out()) is not None: builder.confirm_held_out(k, runs of builder.part_fit(k))
         builder.diagnosis()
 
-    Raises InputError if observation and library have too few common cells.
+    Raises InputError if observation and library have too few common bins.
     """
 
     def __init__(self, evidence: Evidence, limits: Limits) -> None:
@@ -123,7 +123,7 @@ class DiagnosisBuilder:
         return self._tried[proposal].whole
 
     def confirm(self, proposal: int, runs: Floats) -> None:
-        """Adds real runs with whole_fit(). (replicates, all cells)"""
+        """Adds real runs with whole_fit(). (replicates, all bins)"""
         state, known = self._tried[proposal], self.findings.proposals[proposal]
         fit, data = state.whole, self.data
         tried = replace(known, amplitudes=list(fit.amplitudes))
@@ -140,7 +140,7 @@ class DiagnosisBuilder:
             if self._by_likelihood(tried):
                 tried.confirmed_reduction = self._likelihood_reduction(tried.confirmed_gain)
             self.findings.proposals[proposal] = tried
-            whole = whole_runs(runs, without(data.cells, data.lacking(tried.candidates)))
+            whole = whole_runs(runs, without(data.bins, data.lacking(tried.candidates)))
             state.runs = _Runs(fit, whole.mean(axis=0), len(whole))
         self.decision = decide(self.findings, self._limits)
 
@@ -168,7 +168,7 @@ class DiagnosisBuilder:
         place, test = proposal.left_out, self._test
         if place is None:
             return test
-        return HeldOutTest(self.data, *(without_place(cells, place, len(self.data.gap)) for cells in (test.fitted, test.held_out)))
+        return HeldOutTest(self.data, *(without_place(bins, place, len(self.data.gap)) for bins in (test.fitted, test.held_out)))
 
     def wants_held_out(self) -> int | None:
         """The next proposal that needs runs with part_fit(), because the verdict depends on how much of the held-out gap they take
@@ -180,16 +180,16 @@ class DiagnosisBuilder:
 
     def part_fit(self, proposal: int) -> PartialFit:
         """Parameters fitted to the data that are not held out, from real runs of the proposal if there are any."""
-        return self._refit(proposal, self._test.fitted if len(self._test.fitted) else self.data.cells)
+        return self._refit(proposal, self._test.fitted if len(self._test.fitted) else self.data.bins)
 
-    def _refit(self, proposal: int, cells: CellChoice) -> PartialFit:
+    def _refit(self, proposal: int, bins: BinChoice) -> PartialFit:
         candidates, runs = self.findings.proposals[proposal].candidates, self._tried[proposal].runs
         if runs is None:
-            return fit_part(self.data, cells, self.data.gap, candidates)
-        return refit_part(self.data, cells, self._evidence.observed - runs.mean, candidates, runs.fit, runs.count)
+            return fit_part(self.data, bins, self.data.gap, candidates)
+        return refit_part(self.data, bins, self._evidence.observed - runs.mean, candidates, runs.fit, runs.count)
 
     def confirm_held_out(self, proposal: int, runs: Floats) -> None:
-        """Adds real runs with part_fit(). (replicates, all cells)"""
+        """Adds real runs with part_fit(). (replicates, all bins)"""
         self._tried[proposal].held_out_done = True
         tried = self.findings.proposals[proposal]
         if not self._by_likelihood(tried):
@@ -228,7 +228,7 @@ class DiagnosisBuilder:
 
     def shifts_of(self, proposal: int) -> Floats:
         """Shifts of the nuisances that the explanation of a proposal needs besides its effects. (nuisances,)"""
-        fit = self._refit(proposal, self.data.cells) if self._tried[proposal].runs else self.whole_fit(proposal)
+        fit = self._refit(proposal, self.data.bins) if self._tried[proposal].runs else self.whole_fit(proposal)
         shifts, tried = fit.nuisances.copy(), self.findings.proposals[proposal]
         names = [prior.name for prior in self._evidence.nuisances]
         for candidate, amplitude in zip(tried.candidates, tried.amplitudes):
@@ -251,8 +251,8 @@ class DiagnosisBuilder:
         place = self.findings.proposals[self.decided()].left_out
         if explanation is None or place is None:
             return explanation
-        cell = cells_of(self._evidence.library.grid)[place]
-        return replace(explanation, without=f"{cell.displacement * 1e3:.4g} mm of {cell.phase.name}ing")
+        bin = bins_of(self._evidence.library.grid)[place]
+        return replace(explanation, without=f"{bin.displacement * 1e3:.4g} mm of {bin.phase.name}ing")
 
     def _reduction(self) -> GapReduction:
         """Of the decided proposal."""
@@ -282,7 +282,7 @@ class DiagnosisBuilder:
             not_measured=tuple(not_measured(evidence.observed, grid)),
             seconds=0,
             where_threshold=location.threshold,
-            cells=tuple(location.cells),
+            cells=tuple(location.bins),
             ranking=causes.ranking(),
             nuisances=tuple(nuisance_fits(evidence, self._space, data.gap)),
             check_first=tuple(self.check_first()),

@@ -56,7 +56,7 @@ class Causes:
 
 
 def nuisance_fits(evidence: Evidence, space: GapSpace, gap: Floats) -> list[NuisanceFit]:
-    """In the order of the evidence. `gap`: all cells."""
+    """In the order of the evidence. `gap`: all bins."""
     values, errors = space.fit_nuisances(gap), space.nuisance_errors()
     return [NuisanceFit(prior.name, float(value), float(error), prior.sigma, prior.unit, bool(abs(value) > FAR_OUT * prior.sigma))
             for prior, value, error in zip(evidence.nuisances, values, errors)]

@@ -134,14 +134,14 @@ class _Diagnosing:
         return self._simulate(fits, runs.purpose)
 
     def _simulate(self, fits: list[Amplitudes], stage: str, protocol: int | None = None) -> list[Floats]:
-        """(confirmations, cells) for each fit: means over the packings."""
+        """(confirmations, bins) for each fit: means over the packings."""
         rows = self.simulations.fitted(fits, self.options.confirmations, protocol, self._stage(stage))
         each = self.options.confirmations * self.packings
         runs = [mean_over_packings(rows[k * each:(k + 1) * each], self.packings) for k in range(len(fits))]
         return [one + self._luck_of_packings() for one in runs] if self.facts["drawn"] and protocol is None else runs
 
     def _luck_of_packings(self) -> Floats:
-        """(cells,) Mean of the baseline minus that of the packings that confirm, for packings that are drawn: what the few do not share with all
+        """(bins,) Mean of the baseline minus that of the packings that confirm, for packings that are drawn: what the few do not share with all
         is known from the baseline (a control variate)."""
         assert self.evidence
         baseline = self.evidence.baseline
@@ -215,7 +215,7 @@ class _Diagnosing:
         return self.simulations.baseline(self._stage(stage))
 
     def _take_baseline(self, evidence: Evidence, runs: Floats) -> None:
-        """Runs of the unchanged scene (packings x replicates, cells), one packing after the other."""
+        """Runs of the unchanged scene (packings x replicates, bins), one packing after the other."""
         if evidence.library_is_own:  # all rows again: what failed before may not fail now
             packing = [row * self.packings // len(runs) for row in range(len(runs))]
             evidence.library = replace(evidence.library, baseline=runs, packing=packing)

@@ -44,11 +44,11 @@ class WhereEntry:
     z_score: float  # gap over its noise
     z_score_refitted: float  # the same after refitting the nuisances
     force_class: str | None
-    difference: float = 0  # measured minus simulated at the most significant cell, in the observable's unit
+    difference: float = 0  # measured minus simulated at the most significant bin, in the observable's unit
 
 
 @dataclass(frozen=True)
-class WhereCell:
+class WhereBin:
     """One observable at one displacement, significant or not."""
     observable: str
     phase: str = field(metadata=NO_TEXT)
@@ -101,7 +101,7 @@ class TopForce:
 @dataclass(frozen=True)
 class GapReduction:
     held_out: str  # which part of the data
-    before: float  # gap without noise: sum over cells of squared differences in sigmas
+    before: float  # gap without noise: sum over bins of squared differences in sigmas
     after: float
     fraction: float  # 1 - after/before
     interval: Pair  # 90 %
@@ -191,8 +191,8 @@ class Diagnosis:
     detection_limits: tuple[DetectionLimit, ...]
     not_measured: tuple[str, ...]  # missing data, and what they would show
     seconds: float
-    where_threshold: float = field(metadata=ZERO)  # |z| above which a cell is significant among all cells; 0: unknown
-    cells: tuple[WhereCell, ...]
+    where_threshold: float = field(metadata=ZERO)  # |z| above which a bin is significant among all bins; 0: unknown
+    cells: tuple[WhereBin, ...]  # bins, by the key of the file
     ranking: tuple[Cause, ...]  # all candidates by score
     nuisances: tuple[NuisanceFit, ...]  # refitted without any effect
     check_first: tuple[NuisanceFit, ...] = ()  # parameters far from what is stated, the farthest first

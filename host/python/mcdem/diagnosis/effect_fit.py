@@ -8,13 +8,13 @@ import numpy as np
 
 from ..results.recording import Floats
 from .amplitude_search import Misfit
-from .gap_space import CellChoice, GapSpace
+from .gap_space import BinChoice, GapSpace
 from .signature import Signature
 
 SHOWN = 1e-300  # Fisher information of an effect of which the data show anything
 
 
-def no_cells() -> CellChoice:
+def no_bins() -> BinChoice:
     return np.zeros(0, np.int64)
 
 
@@ -22,28 +22,28 @@ def no_cells() -> CellChoice:
 class Candidate:
     """A candidate: its signature and the range of plausible amplitudes.
 
-    `lacking`: cells without a value of the signature, which is zero there. The candidate is fitted on the others, so these cells gain
+    `lacking`: bins without a value of the signature, which is zero there. The candidate is fitted on the others, so these bins gain
     nothing, and their gap counts as unexplained by it.
     """
 
     signature: Signature
     low: float
     high: float
-    lacking: CellChoice = field(default_factory=no_cells)
+    lacking: BinChoice = field(default_factory=no_bins)
 
 
 Candidates = Sequence[Candidate]  # that are fitted together
 
 
-def lacking_cells(candidates: Candidates) -> CellChoice:
-    """Cells that one of the candidates lacks."""
-    return reduce(np.union1d, (candidate.lacking for candidate in candidates if len(candidate.lacking)), no_cells())
+def lacking_bins(candidates: Candidates) -> BinChoice:
+    """Bins that one of the candidates lacks."""
+    return reduce(np.union1d, (candidate.lacking for candidate in candidates if len(candidate.lacking)), no_bins())
 
 
-def explained_by(candidates: Candidates, amplitudes: Floats | Sequence[float], all_cells: int) -> Floats:
-    """(.., all cells) sum of the signatures at their amplitudes (.., candidates)."""
+def explained_by(candidates: Candidates, amplitudes: Floats | Sequence[float], all_bins: int) -> Floats:
+    """(.., all bins) sum of the signatures at their amplitudes (.., candidates)."""
     each = np.moveaxis(np.asarray(amplitudes, float), -1, 0)
-    explained: Floats = np.zeros((*each.shape[1:], all_cells))
+    explained: Floats = np.zeros((*each.shape[1:], all_bins))
     for one, amplitude in zip(candidates, each, strict=True):
         explained += one.signature.at(amplitude)
     return explained
@@ -91,13 +91,13 @@ class Fits:
 
 
 def fits_of_many(space: GapSpace, combinations: Sequence[Candidates], gaps: Floats) -> Fits:
-    """`combinations`: each of the same number n of candidates. `gaps`: (gaps, all cells) observed minus model."""
+    """`combinations`: each of the same number n of candidates. `gaps`: (gaps, all bins) observed minus model."""
     count, n = len(combinations), len(combinations[0]) if combinations else 0
     fits = Fits(np.zeros((count, len(gaps), n)), np.zeros((count, len(gaps))), np.zeros((count, n)), np.zeros((count, 2 * n, 2 * n)))
     by_lacking: dict[bytes, list[int]] = {}
-    lacking = [lacking_cells(candidates) for candidates in combinations]
-    for k, cells in enumerate(lacking):
-        by_lacking.setdefault(cells.tobytes(), []).append(k)
+    lacking = [lacking_bins(candidates) for candidates in combinations]
+    for k, bins in enumerate(lacking):
+        by_lacking.setdefault(bins.tobytes(), []).append(k)
     for chosen in by_lacking.values():
         misfit = _misfit(space.lacking(lacking[chosen[0]]), [combinations[k] for k in chosen], gaps)
         best, value = misfit.best()
@@ -111,7 +111,7 @@ def _misfit(space: GapSpace, combinations: Sequence[Candidates], gaps: Floats) -
     """Lanes: combinations, then gaps."""
     count, n = len(combinations), len(combinations[0])
     of_all = [term for candidates in combinations for one in candidates for term in (one.signature.linear, one.signature.curvature)]
-    terms = space.whiten(np.reshape(of_all, (count * 2 * n, gaps.shape[1]))).reshape(count, 2 * n, len(space.cells))
+    terms = space.whiten(np.reshape(of_all, (count * 2 * n, gaps.shape[1]))).reshape(count, 2 * n, len(space.bins))
     gap = space.whiten(gaps)
     limits = np.array([[(one.signature.reach, one.low, one.high) for one in candidates] for candidates in combinations], float)
     reach, low, high = np.repeat(limits.reshape(count, n, 3), len(gaps), axis=0).transpose(2, 0, 1)
@@ -129,12 +129,12 @@ def _errors(information: Floats) -> list[float]:
 
 
 def fit_effects(space: GapSpace, candidates: Candidates, gap: Floats) -> EffectFit:
-    """`gap`: observed minus model, all cells."""
+    """`gap`: observed minus model, all bins."""
     return fits_of_many(space, [candidates], gap[None]).of(0)
 
 
 def fit_effect(space: GapSpace, candidate: Candidate, gap: Floats) -> EffectFit:
-    """`gap`: observed minus model, all cells."""
+    """`gap`: observed minus model, all bins."""
     return fit_effects(space, [candidate], gap)
 
 

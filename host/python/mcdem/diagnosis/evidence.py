@@ -1,6 +1,6 @@
 """All numbers that a diagnosis is based on, without simulator and files.
 
-Vectors have one entry per cell (observables.py), matrices one row per replicate and one column per cell, in the unit of the cell's
+Vectors have one entry per bin (observables.py), matrices one row per replicate and one column per bin, in the unit of the bin's
 observable; unknown numbers are NaN.
 """
 import math
@@ -13,15 +13,15 @@ from ..errors import InputError
 from ..results.recording import Bools, Floats, Ints
 from .diagnosis_types import MissingBins
 from .effect_fit import Candidate, explained_by
-from .effect_fit import lacking_cells as lacking_of_any
-from .gap_space import CellChoice, FreeParameter, GapSpace, lacking_cells, usable_cells, without
+from .effect_fit import lacking_bins as lacking_of_any
+from .gap_space import BinChoice, FreeParameter, GapSpace, lacking_bins, usable_bins, without
 from .library import Library, apart_from_mean, mean_groups, scatter
 from .signature import Signature, rows_with_numbers
 
 FARTHEST = 12  # largest allowed shift of a parameter, in sigmas of its prior
 OWN_PACKING = -1  # group of the replicates of the experiment's own packing if the library is made on other packings
 MAX_FOLDS = 8
-ENOUGH_CELLS = 0.5  # of the known ones that a signature must have: otherwise it explains no more than a part of the gap
+ENOUGH_BINS = 0.5  # of the known ones that a signature must have: otherwise it explains no more than a part of the gap
 MIN_REPLICATES, MIN_OWN_REPLICATES = 8, 4
 
 FailureCauses = Mapping[str, str]  # why simulations failed, by candidate or nuisance; empty name: the unchanged scene
@@ -51,18 +51,18 @@ class PackingEvidence:
     """One of several packings of an experiment: its observation, and runs of the scene on it."""
 
     name: str
-    observed: Floats  # (cells,)
-    baseline: Floats  # (replicates, cells)
+    observed: Floats  # (bins,)
+    baseline: Floats  # (replicates, bins)
 
     def gap(self) -> Floats:
-        """Observed minus the mean of the baseline. (cells,)"""
+        """Observed minus the mean of the baseline. (bins,)"""
         return self.observed - column_means(self.baseline)
 
 
 @dataclass(eq=False)
 class Evidence:
-    observed: Floats  # the experiment (cells,)
-    baseline: Floats  # (replicates of the scene on the experiment's packing, cells)
+    observed: Floats  # the experiment (bins,)
+    baseline: Floats  # (replicates of the scene on the experiment's packing, bins)
     library: Library
     candidates: list[CandidateRange] = field(default_factory=list)  # all of library.effects
     nuisances: list[NuisancePrior] = field(default_factory=list)  # all of library.nuisances
@@ -78,36 +78,36 @@ class Evidence:
 
 @dataclass(eq=False)
 class GapData:
-    """The evidence on selected cells, with all derived quantities that do not depend on the observation."""
+    """The evidence on selected bins, with all derived quantities that do not depend on the observation."""
 
-    cells: CellChoice
-    mean: Floats  # of the baseline (all cells,)
-    gap: Floats  # observed minus mean (all cells,)
-    noise: Floats  # (rows, all cells) scatter of one replicate; for several packings, of their mean
+    bins: BinChoice
+    mean: Floats  # of the baseline (all bins,)
+    gap: Floats  # observed minus mean (all bins,)
+    noise: Floats  # (rows, all bins) scatter of one replicate; for several packings, of their mean
     group: Ints  # (rows,) rows with a common mean (library.py)
     fold: Ints  # (rows,) rows that are left out together, those of one packing
     mean_of: int  # number of replicates in the mean
     free: list[FreeParameter]
-    candidates: list[Candidate]  # effects, then nuisances beyond their priors; signatures that lack cells are zero there
+    candidates: list[Candidate]  # effects, then nuisances beyond their priors; signatures that lack bins are zero there
     effects: int = 0  # number of effects among them
     packings: int = 1  # number of packings in the gap
-    missing: list[MissingBins] = field(default_factory=list)  # what lacks cells that the experiment has
+    missing: list[MissingBins] = field(default_factory=list)  # what lacks bins that the experiment has
 
-    def lacking(self, candidates: Sequence[int]) -> CellChoice:
-        """Cells that one of these candidates lacks."""
+    def lacking(self, candidates: Sequence[int]) -> BinChoice:
+        """Bins that one of these candidates lacks."""
         return lacking_of_any(self.chosen(candidates))
 
-    def space(self, cells: CellChoice | None = None, free: Sequence[FreeParameter] | None = None, *, noise: Floats | None = None,
+    def space(self, bins: BinChoice | None = None, free: Sequence[FreeParameter] | None = None, *, noise: Floats | None = None,
               mean_of: int | None = None, extra: Floats | None = None) -> GapSpace:
-        """The space of the gap, or of other cells, free parameters, noise, or runs in the mean. `extra`: (all cells,) additional variance."""
+        """The space of the gap, or of other bins, free parameters, noise, or runs in the mean. `extra`: (all bins,) additional variance."""
         return GapSpace(self.noise if noise is None else noise, self.mean_of if mean_of is None else mean_of,
-                        self.cells if cells is None else cells, self.free if free is None else free, extra)
+                        self.bins if bins is None else bins, self.free if free is None else free, extra)
 
     def chosen(self, candidates: Sequence[int]) -> list[Candidate]:
         return [self.candidates[c] for c in candidates]
 
     def explained(self, candidates: Sequence[int], amplitudes: Floats | Sequence[float]) -> Floats:
-        """(.., all cells) sum of their signatures at amplitudes (.., candidates)."""
+        """(.., all bins) sum of their signatures at amplitudes (.., candidates)."""
         return explained_by(self.chosen(candidates), amplitudes, len(self.mean))
 
     def name(self, candidate: int) -> str:
@@ -127,7 +127,7 @@ class GapData:
 
 
 def column_means(rows: Floats) -> Floats:
-    """Mean over the finite rows. (cells,)"""
+    """Mean over the finite rows. (bins,)"""
     finite = np.isfinite(rows)
     with np.errstate(invalid="ignore"):
         mean: Floats = np.where(finite, rows, 0).sum(axis=0) / finite.sum(axis=0)
@@ -135,7 +135,7 @@ def column_means(rows: Floats) -> Floats:
 
 
 def mean_over_packings(rows: Floats, packings: int) -> Floats:
-    """Mean over packings whose rows are stored one packing after the other. (rows of a packing, cells)"""
+    """Mean over packings whose rows are stored one packing after the other. (rows of a packing, bins)"""
     each = len(rows) // packings
     mean: Floats = rows[: packings * each].reshape(packings, each, -1).sum(axis=0) / packings
     return mean
@@ -157,7 +157,7 @@ def find(signatures: Sequence[Signature], name: str) -> Signature:
 
 def leave_out_failures(evidence: Evidence, causes: FailureCauses | None = None) -> list[str]:
     """Leaves out the results of failed simulations: replicates without any value, candidates and nuisances without a signature in most of
-    the otherwise known cells. Replicates without values in some cells are left out of the noise if more values remain so. Returns what
+    the otherwise known bins. Replicates without values in some bins are left out of the noise if more values remain so. Returns what
     was left out and why. Raises InputError if too few replicates remain."""
     known_causes = causes or {}
     notes = _leave_out_replicates(evidence, known_causes) + _leave_out_incomplete(evidence)
@@ -189,7 +189,7 @@ def _leave_out_replicates(evidence: Evidence, causes: FailureCauses) -> list[str
 
 
 def _leave_out_incomplete(evidence: Evidence) -> list[str]:
-    """Leaves out of the noise those replicates that lack the most cells, if more values remain without them: a cell is compared only if
+    """Leaves out of the noise those replicates that lack the most bins, if more values remain without them: a bin is compared only if
     every replicate has it. Packings keep two replicates."""
     has = np.isfinite(evidence.library.baseline)
     count = len(has)
@@ -214,9 +214,9 @@ def _keep_rows(evidence: Evidence, kept: Ints) -> None:
 
 
 def _not_testable(signature: Signature, known: Bools, causes: FailureCauses) -> list[str]:
-    """The reason, if it lacks most of the cells that all others have."""
+    """The reason, if it lacks most of the bins that all others have."""
     name, has = signature.name, int((known & np.isfinite(signature.linear) & np.isfinite(signature.curvature)).sum())
-    if has >= ENOUGH_CELLS * known.sum():
+    if has >= ENOUGH_BINS * known.sum():
         return []
     if has > 0 and name not in causes:
         return [f"{name}: with it only {has} of {known.sum()} bins have a value, so it cannot be tested"]
@@ -235,7 +235,7 @@ def gap_data(evidence: Evidence) -> GapData:
     gap = evidence.observed - mean
     candidates = [_candidate(evidence, wanted) for wanted in evidence.candidates]
     data = GapData(
-        cells=usable_cells(evidence.library.baseline, parameters, gap), mean=mean, gap=gap,
+        bins=usable_bins(evidence.library.baseline, parameters, gap), mean=mean, gap=gap,
         noise=scatter(evidence.library) / math.sqrt(evidence.packing_count()),
         group=np.array(mean_groups(evidence.library), dtype=np.int64), fold=_folds_of(evidence.library.packing),
         mean_of=len(evidence.baseline),
@@ -263,7 +263,7 @@ def _folds_of(packing: Sequence[int]) -> Ints:
 
 def _candidate(evidence: Evidence, wanted: CandidateRange) -> Candidate:
     signature = find(evidence.library.effects, wanted.name)
-    lacking = lacking_cells(signature)
+    lacking = lacking_bins(signature)
     if len(lacking):
         linear, curvature, slopes = signature.linear.copy(), signature.curvature.copy(), signature.slopes.copy()
         linear[lacking] = curvature[lacking] = 0
@@ -274,7 +274,7 @@ def _candidate(evidence: Evidence, wanted: CandidateRange) -> Candidate:
 
 
 def _missing_bins(evidence: Evidence, data: GapData) -> list[MissingBins]:
-    """What lacks cells that the experiment and most of the replicates have."""
+    """What lacks bins that the experiment and most of the replicates have."""
     has = np.isfinite(evidence.library.baseline)
     measured = np.isfinite(evidence.observed)
     for packing in evidence.packings:
@@ -282,17 +282,17 @@ def _missing_bins(evidence: Evidence, data: GapData) -> list[MissingBins]:
     possible = np.flatnonzero(measured & (2 * has.sum(axis=0) > len(has)))
     of_all = [("", np.flatnonzero(~has.all(axis=0)))]
     of_all += [(packing.name, np.flatnonzero(~np.isfinite(packing.observed))) for packing in evidence.packings]
-    of_all += [(signature.name, lacking_cells(signature)) for signature in parameters_of(evidence)]
+    of_all += [(signature.name, lacking_bins(signature)) for signature in parameters_of(evidence)]
     of_effects = [(candidate.signature.name, candidate.lacking) for candidate in data.candidates]
     return [MissingBins(name, lost, len(bins), for_all)
-            for bins, for_all, lists in ((possible, True, of_all), (data.cells, False, of_effects))
+            for bins, for_all, lists in ((possible, True, of_all), (data.bins, False, of_effects))
             for name, lacking in lists if (lost := len(bins) - len(without(bins, lacking))) > 0]
 
 
 def _add_own_scatter(data: GapData, baseline: Floats) -> None:
     """Adds the replicates of the experiment's own packing to the noise, as a further packing: packings differ in their scatter. Uses those
-    that have all selected cells. Each is left out separately, because the experiment is compared when the others are known."""
-    whole = baseline[np.isfinite(baseline[:, data.cells]).all(axis=1)]
+    that have all selected bins. Each is left out separately, because the experiment is compared when the others are known."""
+    whole = baseline[np.isfinite(baseline[:, data.bins]).all(axis=1)]
     if len(whole) < MIN_OWN_REPLICATES:
         return
     group = [OWN_PACKING] * len(whole)

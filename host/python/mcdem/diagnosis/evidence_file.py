@@ -43,13 +43,13 @@ def evidence_text(evidence: Evidence) -> str:
 
 
 def read_evidence(file: Path, library: Library) -> Evidence:
-    """Raises InputError if the file is not evidence, or does not match the cells of this library."""
+    """Raises InputError if the file is not evidence, or does not match the bins of this library."""
     what = "evidence of this challenge"
     read = _read(file, _EvidenceFile, what)
-    cells = library.baseline.shape[1]
+    bins = library.baseline.shape[1]
     effects, nuisances = ({signature.name for signature in signatures} for signatures in (library.effects, library.nuisances))
     try:
-        expect(read.observed.shape == read.baseline.shape[1:] == (cells,), "it has other observables than the library")
+        expect(read.observed.shape == read.baseline.shape[1:] == (bins,), "it has other observables than the library")
         expect(all(one.name in effects for one in read.candidates), "the library lacks an effect of it")
         expect(all(one.name in nuisances for one in read.nuisances), "the library lacks a nuisance of it")
     except Invalid as problem:

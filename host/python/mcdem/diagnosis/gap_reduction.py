@@ -1,7 +1,7 @@
 """Reduction of the gap by an effect. The effect's amplitude and the nuisances are fitted on loading up to 85 % of the stroke. The gap is
 measured on the remaining data, once with only the nuisances refitted and once with the effect as well.
 
-Differences are (all cells,), or (n, all cells) for n of them.
+Differences are (all bins,), or (n, all bins) for n of them.
 """
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -16,8 +16,8 @@ from ..results.recording import Floats
 from .diagnosis_types import GapReduction
 from .effect_fit import Candidate, fit_effects, fits_of_many
 from .evidence import GapData
-from .gap_space import CellChoice, FreeParameter, GapSpace, resolutions, without
-from ..observe.grid import Grid, cells_of
+from .gap_space import BinChoice, FreeParameter, GapSpace, resolutions, without
+from ..observe.grid import Grid, bins_of
 from .proposals import whole_runs
 from .signature import Signature
 
@@ -29,7 +29,7 @@ PLACEBO_RANGE = 50  # of their amplitudes, either way
 
 @dataclass(frozen=True)
 class HeldOutGap:
-    """Gap on the held-out cells after the nuisances are fitted on the others, and its scatter without a gap."""
+    """Gap on the held-out bins after the nuisances are fitted on the others, and its scatter without a gap."""
 
     size: float = 0
     noise: float = 0
@@ -46,15 +46,15 @@ class PartialFit:
     nuisances: Floats = field(default_factory=lambda: np.zeros(0))
 
 
-def gap_sizes(data: GapData, cells: CellChoice, gaps: Floats, mean_of: int, extra: int = 0) -> Floats:
-    """(n,) gaps without noise over cells, in squared sigmas: r'Dr - tr(D Sigma).
+def gap_sizes(data: GapData, bins: BinChoice, gaps: Floats, mean_of: int, extra: int = 0) -> Floats:
+    """(n,) gaps without noise over bins, in squared sigmas: r'Dr - tr(D Sigma).
 
     `mean_of`: number of runs in the mean that was compared. `extra`: number of replicates whose scatter was added.
     """
     both = 1 + extra + (1 / mean_of if mean_of > 0 else 0)
-    scatter = (data.noise[:, cells]**2).mean(axis=0)
-    variance = scatter + resolutions(cells, gaps.shape[-1])**2
-    sizes: Floats = ((gaps[..., cells]**2 - both * scatter) / variance).sum(axis=-1)
+    scatter = (data.noise[:, bins]**2).mean(axis=0)
+    variance = scatter + resolutions(bins, gaps.shape[-1])**2
+    sizes: Floats = ((gaps[..., bins]**2 - both * scatter) / variance).sum(axis=-1)
     return sizes
 
 
@@ -63,15 +63,15 @@ def _part_gone(before: Floats | float, after: Floats | float) -> Floats:
 
 
 class HeldOutTest:
-    """Fits on the cells `fitted` and measures on the cells `held_out`. If one part is missing, all gaps and reductions are zero."""
+    """Fits on the bins `fitted` and measures on the bins `held_out`. If one part is missing, all gaps and reductions are zero."""
 
-    def __init__(self, data: GapData, fitted: CellChoice, held_out: CellChoice) -> None:
+    def __init__(self, data: GapData, fitted: BinChoice, held_out: BinChoice) -> None:
         self.data, self.fitted, self.held_out = data, fitted, held_out
 
     @classmethod
     def split(cls, data: GapData, grid: Grid) -> "HeldOutTest":
-        first = np.array([cell.phase == Phase.load and cell.displacement < FITTED_PART * grid.stroke for cell in cells_of(grid)])
-        return cls(data, *(data.cells[part] for part in (first[data.cells], ~first[data.cells])))
+        first = np.array([bin.phase == Phase.load and bin.displacement < FITTED_PART * grid.stroke for bin in bins_of(grid)])
+        return cls(data, *(data.bins[part] for part in (first[data.bins], ~first[data.bins])))
 
     @cached_property
     def _space(self) -> GapSpace:
@@ -89,13 +89,13 @@ class HeldOutTest:
         return HeldOutGap(size, float(np.sqrt(np.mean(np.square(noise)))))
 
     def reduction(self, candidates: Sequence[int]) -> float:
-        """Fraction of the held-out gap taken away by the given candidates (one or two), fitted on the other cells. Nothing of it is taken
-        away in cells that a candidate lacks."""
+        """Fraction of the held-out gap taken away by the given candidates (one or two), fitted on the other bins. Nothing of it is taken
+        away in bins that a candidate lacks."""
         return float(self._sizes_with(self.data.gap[None], candidates)[2][0]) if self.is_whole() else 0
 
-    def reduction_by_runs(self, observed: Floats, runs: Floats, lacking: CellChoice | None = None) -> float | None:
+    def reduction_by_runs(self, observed: Floats, runs: Floats, lacking: BinChoice | None = None) -> float | None:
         """The same for runs with the amplitudes fitted there; row: replicate. None if they failed. The gap stays as it was in those
-        `lacking` cells of the candidates in which some run has no value."""
+        `lacking` bins of the candidates in which some run has no value."""
         lacking = self.held_out[:0] if lacking is None else lacking
         runs = whole_runs(runs, without(self.held_out, lacking))
         before = self.gap().size
@@ -174,19 +174,19 @@ def stepped(data: GapData, candidates: Sequence[int], fit: PartialFit, step: Flo
     return PartialFit(amplitudes, data.in_range(fit.nuisances + step[:count]))
 
 
-def fit_part(data: GapData, cells: CellChoice, gap: Floats, candidates: Sequence[int]) -> PartialFit:
-    """Amplitudes and nuisances fitted on these cells."""
-    space = data.space(cells)
+def fit_part(data: GapData, bins: BinChoice, gap: Floats, candidates: Sequence[int]) -> PartialFit:
+    """Amplitudes and nuisances fitted on these bins."""
+    space = data.space(bins)
     amplitudes = list(fit_effects(space, data.chosen(candidates), gap).amplitudes)
     nuisances = space.lacking(data.lacking(candidates)).fit_nuisances(gap - data.explained(candidates, amplitudes))
     return PartialFit(amplitudes, data.in_range(nuisances))
 
 
-def refit_part(data: GapData, cells: CellChoice, left: Floats, candidates: Sequence[int], at: PartialFit, mean_of: int) -> PartialFit:
-    """The same from runs with `at` that left `left` (observed minus their mean, of `mean_of` runs): one Gauss-Newton step on these cells
-    only. Nuisances start from zero again, so that they contain no information from other cells."""
+def refit_part(data: GapData, bins: BinChoice, left: Floats, candidates: Sequence[int], at: PartialFit, mean_of: int) -> PartialFit:
+    """The same from runs with `at` that left `left` (observed minus their mean, of `mean_of` runs): one Gauss-Newton step on these bins
+    only. Nuisances start from zero again, so that they contain no information from other bins."""
     slopes = [FreeParameter(one.signature.slope(amplitude), one.high - one.low)
               for one, amplitude in zip(data.chosen(candidates), at.amplitudes)]
-    space = GapSpace(data.noise, mean_of, without(cells, data.lacking(candidates)), [*data.free, *slopes])
+    space = GapSpace(data.noise, mean_of, without(bins, data.lacking(candidates)), [*data.free, *slopes])
     without_nuisances = left + sum(shift * one.direction for shift, one in zip(at.nuisances, data.free))
     return stepped(data, candidates, PartialFit(at.amplitudes, np.zeros(len(at.nuisances))), space.fit_nuisances(without_nuisances))

@@ -1,4 +1,4 @@
-"""The space in which an observation is compared with the model: common cells, whitened noise, uncertain parameters marginalised."""
+"""The space in which an observation is compared with the model: common bins, whitened noise, uncertain parameters marginalised."""
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from ..results.recording import Floats, Ints
-from ..observe.grid import cells_each
+from ..observe.grid import bins_each
 from ..observe.observables import observables
 from .signature import Signature
 
-CellChoice = Ints  # subset of the cells in ascending order, for ablations and the split into fitted and held-out cells
-MORE_REPLICATES = 8  # weight of the mean variance of an observable in that of a single cell
+BinChoice = Ints  # subset of the bins in ascending order, for ablations and the split into fitted and held-out bins
+MORE_REPLICATES = 8  # weight of the mean variance of an observable in that of a single bin
 
 
 def shrunk_covariance(rows: Floats) -> Floats:
@@ -22,7 +22,7 @@ def shrunk_covariance(rows: Floats) -> Floats:
     sigma = np.maximum(np.sqrt((rows**2).sum(axis=0) / n), 1e-300)
     z = rows / sigma
     correlation = z.T @ z / n
-    # Sum over pairs of cells of the variance of their correlation, over that of its square.
+    # Sum over pairs of bins of the variance of their correlation, over that of its square.
     sampling = ((z**2).T @ z**2 / n - correlation**2).sum() / n
     signal = (correlation**2).sum() - len(correlation)
     shrink = min(max(sampling / signal, 0.0), 1.0) if signal > 0 else 1.0
@@ -32,10 +32,10 @@ def shrunk_covariance(rows: Floats) -> Floats:
     return covariance
 
 
-def usable_cells(baseline: Floats, parameters: Sequence[Signature], observed: Floats) -> CellChoice:
-    """Cells with finite values in every replicate (n, all) and in the signature of every uncertain parameter, and with nonzero variance.
+def usable_bins(baseline: Floats, parameters: Sequence[Signature], observed: Floats) -> BinChoice:
+    """Bins with finite values in every replicate (n, all) and in the signature of every uncertain parameter, and with nonzero variance.
 
-    A parameter whose change of a cell is unknown may shift it by any amount.
+    A parameter whose change of a bin is unknown may shift it by any amount.
     """
     usable = np.isfinite(baseline).all(axis=0) & (baseline != baseline[0]).any(axis=0) & np.isfinite(observed)
     for signature in parameters:
@@ -48,30 +48,30 @@ def _has_value(signature: Signature) -> NDArray[np.bool_]:
     return known
 
 
-def lacking_cells(signature: Signature) -> CellChoice:
-    """Cells in which a signature has no value."""
+def lacking_bins(signature: Signature) -> BinChoice:
+    """Bins in which a signature has no value."""
     return np.flatnonzero(~_has_value(signature))
 
 
-def without(cells: CellChoice, others: CellChoice) -> CellChoice:
-    """`cells` that are not among `others`."""
-    return cells[~np.isin(cells, others)] if len(others) else cells
+def without(bins: BinChoice, others: BinChoice) -> BinChoice:
+    """`bins` that are not among `others`."""
+    return bins[~np.isin(bins, others)] if len(others) else bins
 
 
-def resolutions(cells: CellChoice, all: int) -> Floats:
-    """(cells,) Observable.resolution of each selected cell, of `all` cells."""
-    chosen: Floats = np.array([observable.resolution for observable in observables()])[cells // cells_each(all)]
+def resolutions(bins: BinChoice, all: int) -> Floats:
+    """(bins,) Observable.resolution of each selected bin, of `all` bins."""
+    chosen: Floats = np.array([observable.resolution for observable in observables()])[bins // bins_each(all)]
     return chosen
 
 
-def _moderated(variance: Floats, cells: CellChoice, noise: Floats) -> Floats:
-    """Variances of single cells, moderated towards the mean of their observable because there are few replicates.
+def _moderated(variance: Floats, bins: BinChoice, noise: Floats) -> Floats:
+    """Variances of single bins, moderated towards the mean of their observable because there are few replicates.
 
-    As if that mean had been observed in a few more replicates (Smyth 2004). A cell with an accidentally small scatter is then not
+    As if that mean had been observed in a few more replicates (Smyth 2004). A bin with an accidentally small scatter is then not
     significant.
     """
     n, all = noise.shape
-    observable = cells // cells_each(all)
+    observable = bins // bins_each(all)
     mean = (np.bincount(observable, variance) / np.maximum(np.bincount(observable), 1))[observable]
     moderated: Floats = (n * variance + MORE_REPLICATES * mean) / (n + MORE_REPLICATES)
     return moderated
@@ -79,7 +79,7 @@ def _moderated(variance: Floats, cells: CellChoice, noise: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class FreeParameter:
-    """A refitted parameter: its linear signature on all cells and its prior."""
+    """A refitted parameter: its linear signature on all bins and its prior."""
 
     direction: Floats  # (all,) per unit
     sigma: float  # prior
@@ -92,29 +92,29 @@ class GapSpace:
     A difference `all` is (all,), or (N, all) for N of them; results then have N rows.
     """
 
-    cells: CellChoice
-    whitener: Floats  # (cells, cells) inverse of the Cholesky factor of the covariance with nuisances
-    sigma: Floats  # (cells,) one sigma of each selected cell, moderated over its observable, without nuisances
+    bins: BinChoice
+    whitener: Floats  # (bins, bins) inverse of the Cholesky factor of the covariance with nuisances
+    sigma: Floats  # (bins,) one sigma of each selected bin, moderated over its observable, without nuisances
 
     def __init__(
-        self, noise: Floats, mean_of: int, cells: CellChoice, free: Sequence[FreeParameter], extra: Floats | None = None
+        self, noise: Floats, mean_of: int, bins: BinChoice, free: Sequence[FreeParameter], extra: Floats | None = None
     ) -> None:
-        self.cells = np.asarray(cells, np.int64)
+        self.bins = np.asarray(bins, np.int64)
         both = 1 + (1 / mean_of if mean_of > 0 else 0)  # scatter of the observation and of the mean
-        self._covariance = both * shrunk_covariance(noise[:, self.cells])  # without nuisances
-        variance = self._covariance.diagonal() + resolutions(self.cells, noise.shape[1]) ** 2
+        self._covariance = both * shrunk_covariance(noise[:, self.bins])  # without nuisances
+        variance = self._covariance.diagonal() + resolutions(self.bins, noise.shape[1]) ** 2
         if extra is not None and len(extra):
-            variance = variance + extra[self.cells]
+            variance = variance + extra[self.bins]
         np.fill_diagonal(self._covariance, variance)
-        self.sigma = np.sqrt(_moderated(variance, self.cells, noise))
-        self._directions = np.array([one.direction[self.cells] for one in free]).reshape(len(free), len(self.cells))
+        self.sigma = np.sqrt(_moderated(variance, self.bins, noise))
+        self._directions = np.array([one.direction[self.bins] for one in free]).reshape(len(free), len(self.bins))
         self._priors = np.array([one.sigma for one in free], float)
         self._factorise()
 
     def _factorise(self) -> None:
-        """From cells, covariance, directions and priors."""
-        self._parts: dict[bytes, GapSpace] = {}  # by the cells that they lack
-        count = len(self.cells)
+        """From bins, covariance, directions and priors."""
+        self._parts: dict[bytes, GapSpace] = {}  # by the bins that they lack
+        count = len(self.bins)
         self._noise = cholesky(self._covariance, lower=True) if count else np.zeros((0, 0))
         scaled = self._priors[:, None] * self._directions
         total = cholesky(self._covariance + scaled.T @ scaled, lower=True) if count else self._noise
@@ -125,36 +125,36 @@ class GapSpace:
         self._posterior = np.linalg.inv(inverse @ self._directions.T + np.diag(self._priors**-2.0))
         self._gain = self._posterior @ inverse
 
-    def lacking(self, lacking: CellChoice) -> "GapSpace":
-        """The same on its cells that are not among `lacking`: nothing is assumed about the others."""
+    def lacking(self, lacking: BinChoice) -> "GapSpace":
+        """The same on its bins that are not among `lacking`: nothing is assumed about the others."""
         if not len(lacking):
             return self
         key = np.asarray(lacking, np.int64).tobytes()
         if key not in self._parts:
-            places = np.flatnonzero(~np.isin(self.cells, lacking))
-            self._parts[key] = self if len(places) == len(self.cells) else self._part(places)
+            places = np.flatnonzero(~np.isin(self.bins, lacking))
+            self._parts[key] = self if len(places) == len(self.bins) else self._part(places)
         return self._parts[key]
 
     def _part(self, places: Ints) -> "GapSpace":
-        """The part at these places of its cells."""
+        """The part at these places of its bins."""
         part = copy.copy(self)
-        part.cells, part.sigma = self.cells[places], self.sigma[places]
+        part.bins, part.sigma = self.bins[places], self.sigma[places]
         part._covariance, part._directions = self._covariance[np.ix_(places, places)], self._directions[:, places]
         part._factorise()
         return part
 
     def whiten(self, all: Floats) -> Floats:
-        """(.., cells) whitened difference; its square is a chi-square of the gap with nuisances marginalised."""
-        return all[..., self.cells] @ self.whitener.T
+        """(.., bins) whitened difference; its square is a chi-square of the gap with nuisances marginalised."""
+        return all[..., self.bins] @ self.whitener.T
 
     def log_likelihood(self, all: Floats) -> Floats:
-        """(..) marginal log likelihood of a difference, up to a constant that depends on the number of cells."""
+        """(..) marginal log likelihood of a difference, up to a constant that depends on the number of bins."""
         log_likelihood: Floats = -0.5 * (self.whiten(all) ** 2).sum(axis=-1) - self._log_determinant
         return log_likelihood
 
     def fit_nuisances(self, all: Floats) -> Floats:
         """(.., free) most probable values of the nuisances for a difference."""
-        nuisances: Floats = all[..., self.cells] @ self._gain.T
+        nuisances: Floats = all[..., self.bins] @ self._gain.T
         return nuisances
 
     def nuisance_errors(self) -> Floats:
@@ -163,10 +163,10 @@ class GapSpace:
         return errors
 
     def refitted(self, all: Floats) -> Floats:
-        """(.., cells) difference minus the contribution of the most probable nuisances."""
-        left: Floats = all[..., self.cells] - self.fit_nuisances(all) @ self._directions
+        """(.., bins) difference minus the contribution of the most probable nuisances."""
+        left: Floats = all[..., self.bins] - self.fit_nuisances(all) @ self._directions
         return left
 
     def sigma_of(self, weights: Floats) -> float:
-        """One sigma of a weighted sum of selected cells, without nuisances."""
+        """One sigma of a weighted sum of selected bins, without nuisances."""
         return float(np.linalg.norm(weights @ self._noise))

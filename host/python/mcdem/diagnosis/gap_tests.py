@@ -12,10 +12,10 @@ from .effect_fit import EffectFit, Fits, fits_of_many
 from .evidence import OWN_PACKING, GapData
 from .gap_space import GapSpace
 from .library import apart_from_mean
-from ..observe.grid import cells_each
+from ..observe.grid import bins_each
 
 DRAWS_A_REPLICATE = 3
-FEWEST_CELLS = 3  # of an observable whose mean and trend are tested
+FEWEST_BINS = 3  # of an observable whose mean and trend are tested
 STATISTICS = "omnibus", "directed", "remainder", "highest_refitted", "pattern_left"  # fields of GapStatistics
 
 Statistics = dict[str, Floats]  # by name, of several gaps
@@ -28,14 +28,14 @@ class GapStatistics:
     omnibus: float  # chi-square with nuisances marginalised
     directed: float  # largest gain in log likelihood of any candidate
     remainder: float  # chi-square after the best candidate
-    highest_refitted: float  # largest |gap|/sigma of a cell after refitting the nuisances
+    highest_refitted: float  # largest |gap|/sigma of a bin after refitting the nuisances
     pattern_left: float  # highest_pattern of the gap that the best candidate leaves
     fits: list[EffectFit] = field(default_factory=list)  # by candidate
     best: int = 0
 
 
 def gap_statistics(space: GapSpace, data: GapData, gap: Floats) -> GapStatistics:
-    """`gap`: (all cells,)"""
+    """`gap`: (all bins,)"""
     fits = fits_of_singles(space, data, gap[None])
     values, best = _statistics(space, data, gap[None], fits)
     return GapStatistics(**{name: float(one[0]) for name, one in values.items()}, fits=[fits.of(c) for c in range(len(data.candidates))],
@@ -43,18 +43,18 @@ def gap_statistics(space: GapSpace, data: GapData, gap: Floats) -> GapStatistics
 
 
 def statistics_of(space: GapSpace, data: GapData, gaps: Floats) -> Statistics:
-    """GapStatistics of many gaps (gaps, all cells)."""
+    """GapStatistics of many gaps (gaps, all bins)."""
     return _statistics(space, data, gaps, fits_of_singles(space, data, gaps))[0]
 
 
 def fits_of_singles(space: GapSpace, data: GapData, gaps: Floats) -> Fits:
-    """Of each candidate alone to gaps (gaps, all cells)."""
+    """Of each candidate alone to gaps (gaps, all bins)."""
     return fits_of_many(space, [[candidate] for candidate in data.candidates], gaps)
 
 
 def _statistics(space: GapSpace, data: GapData, gaps: Floats, fits: Fits) -> tuple[Statistics, Ints]:
     """Also the best candidates."""
-    omnibus, refitted = (space.whiten(gaps) ** 2).sum(axis=1), _highest_cell(space, space.refitted(gaps))
+    omnibus, refitted = (space.whiten(gaps) ** 2).sum(axis=1), _highest_bin(space, space.refitted(gaps))
     best, directed, left = np.zeros(len(gaps), np.int64), np.zeros(len(gaps)), gaps.copy()
     if data.candidates:
         best, directed = fits.scores.argmax(axis=0), fits.scores.max(axis=0)
@@ -65,15 +65,15 @@ def _statistics(space: GapSpace, data: GapData, gaps: Floats, fits: Fits) -> tup
 
 
 def highest_pattern(space: GapSpace, gap: Floats) -> float:
-    """Significance of the strongest simple pattern in a gap (all cells,) after refitting the nuisances: a cell, the mean over the cells of
+    """Significance of the strongest simple pattern in a gap (all bins,) after refitting the nuisances: a bin, the mean over the bins of
     an observable, or their trend in the order in which the plate passes them."""
     return float(highest_patterns(space, gap[None])[0])
 
 
 def highest_patterns(space: GapSpace, gaps: Floats) -> Floats:
-    """highest_pattern of many gaps (gaps, all cells)."""
+    """highest_pattern of many gaps (gaps, all bins)."""
     left = space.refitted(gaps)
-    highest = _highest_cell(space, left)
+    highest = _highest_bin(space, left)
     weights = _observable_patterns(space, gaps.shape[1])
     if not len(weights):
         return highest
@@ -81,20 +81,20 @@ def highest_patterns(space: GapSpace, gaps: Floats) -> Floats:
     return np.maximum(highest, np.abs(left @ weights.T / sigma).max(axis=1))
 
 
-def _highest_cell(space: GapSpace, left: Floats) -> Floats:
+def _highest_bin(space: GapSpace, left: Floats) -> Floats:
     highest: Floats = np.abs(left / space.sigma).max(axis=1)
     return highest
 
 
-def _observable_patterns(space: GapSpace, all_cells: int) -> Floats:
-    """Mean and trend of every observable with three or more cells, as weights of the selected cells, which are ordered by observable, phase
-    (loading first) and displacement (cells_of). Cells have the weight 1/sigma^2. (patterns, cells)"""
-    each = cells_each(all_cells)
-    observable, place = np.divmod(space.cells, each)
-    # Order in which the plate passes a cell: loading, then unloading.
+def _observable_patterns(space: GapSpace, all_bins: int) -> Floats:
+    """Mean and trend of every observable with three or more bins, as weights of the selected bins, which are ordered by observable, phase
+    (loading first) and displacement (bins_of). Bins have the weight 1/sigma^2. (patterns, bins)"""
+    each = bins_each(all_bins)
+    observable, place = np.divmod(space.bins, each)
+    # Order in which the plate passes a bin: loading, then unloading.
     passage = np.where(2 * place < each, place, each - 1 - (place - each // 2))
-    tested, cells = np.unique(observable, return_counts=True)
-    mean = (observable == tested[cells >= FEWEST_CELLS, None]) / space.sigma**2
+    tested, bins = np.unique(observable, return_counts=True)
+    mean = (observable == tested[bins >= FEWEST_BINS, None]) / space.sigma**2
     trend = mean * passage
     return np.concatenate([mean, trend - (trend.sum(axis=1) / mean.sum(axis=1))[:, None] * mean])
 
@@ -141,8 +141,8 @@ class NullDistribution:
         return root.complement_at(value, root.own_degrees)
 
     def misfit_p(self, space: GapSpace, left: Floats) -> float:
-        """Probability that the remainder of an explanation (all cells,) is noise: Bonferroni correction for two tests, its chi-square over
-        all cells (insensitive to gaps in few cells) and its highest pattern (insensitive to gaps spread over many cells). Student's t has
+        """Probability that the remainder of an explanation (all bins,) is noise: Bonferroni correction for two tests, its chi-square over
+        all bins (insensitive to gaps in few bins) and its highest pattern (insensitive to gaps spread over many bins). Student's t has
         the degrees of freedom of all replicates, with which the limits of the verdict were set."""
         values = {"remainder": float((space.whiten(left) ** 2).sum()), "pattern_left": highest_pattern(space, left)}
         roots = {name: self._predicted(name) for name in values}

@@ -47,7 +47,7 @@ class Inference:
         return self._rounds < MAX_ROUNDS and len(self._tried) > 0
 
     def add(self, results: Sequence[Floats]) -> None:
-        """The runs of next_runs(): (replicates, all cells) for each fit."""
+        """The runs of next_runs(): (replicates, all bins) for each fit."""
         if not self._in_rounds():
             k = self.builder.wants_held_out()
             assert k is not None

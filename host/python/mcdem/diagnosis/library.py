@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..files import create_whole, read_input
 from ..json_text import compact_json
 from ..look import Path, is_file, is_there
-from ..observe.grid import Grid, cells_of
+from ..observe.grid import Grid, bins_of
 from ..results.recording import Floats
 from .signature import Signature
 
@@ -25,7 +25,7 @@ OTHER_OBSERVABLES = "it has other observables than this program"
 @dataclass(eq=False)
 class Library:
     grid: Grid
-    baseline: Floats  # (replicates, cells)
+    baseline: Floats  # (replicates, bins)
     packing: list[int]  # of each replicate
     effects: list[Signature] = field(default_factory=list)
     nuisances: list[Signature] = field(default_factory=list)
@@ -45,7 +45,7 @@ def mean_groups(library: Library) -> list[int]:
 
 
 def apart_from_mean(rows: Floats, group: Sequence[int]) -> Floats:
-    """(n, cells) rows minus the mean of their group, scaled to the variance of one row."""
+    """(n, bins) rows minus the mean of their group, scaled to the variance of one row."""
     groups, apart = np.asarray(group), np.array(rows, float)
     for one in set(group):
         members = groups == one
@@ -82,7 +82,7 @@ def write_library(file: Path, library: Library) -> bool:
 def _expect_possible(library: Library) -> None:
     """Raises Invalid."""
     grid, signatures = library.grid, library.effects + library.nuisances
-    cells = len(cells_of(grid))
+    bins = len(bins_of(grid))
     expect(len(grid.force) in (0, len(grid.displacement)), "it has another number of forces than displacements")
     for hold in grid.holds:
         expect(hold.keep in ("position", "force", "stress"), f"there is no {json.dumps(hold.keep, ensure_ascii=False)}")
@@ -90,11 +90,11 @@ def _expect_possible(library: Library) -> None:
     numbers = [grid.width, grid.stroke, grid.force_width, *(hold.displacement for hold in grid.holds), *(s.reach for s in signatures)]
     expect(bool(np.isfinite(numbers).all()), "it has something else than a finite number")
     expect(len(library.packing) > 0, "it has no replicates")
-    expect(library.baseline.shape[1:] == (cells,), OTHER_OBSERVABLES)
+    expect(library.baseline.shape[1:] == (bins,), OTHER_OBSERVABLES)
     expect(len(library.baseline) == len(library.packing), "it has another number of replicates than packings")
     for s in signatures:
-        expect(s.linear.shape == s.curvature.shape == (cells,), f"signature {s.name} is of another length than the cells")
-        expect(s.pairs() == 0 or s.slopes.shape[1:] == (cells,), OTHER_OBSERVABLES)
+        expect(s.linear.shape == s.curvature.shape == (bins,), f"signature {s.name} is of another length than the bins")
+        expect(s.pairs() == 0 or s.slopes.shape[1:] == (bins,), OTHER_OBSERVABLES)
 
 
 def _library_of(text: str) -> Library:

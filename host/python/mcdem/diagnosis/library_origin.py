@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..look import Path
-from ..observe.grid import Grid, cells_of
+from ..observe.grid import Grid, bins_of
 from ..observe.observables import observables
 from ..results.names import Phase
 from ..results.recording import Floats
@@ -64,8 +64,8 @@ def expect_library_of(library: Library, grid: Grid, candidates: Sequence[str], n
 
 
 def _load(grid: Grid, baseline: Floats) -> float:
-    """Mean top force of the runs (replicates, cells), summed over the levels of loading; large forces dominate [N]."""
-    is_force = np.array([observables()[cell.observable].name == "top_force" and cell.phase == Phase.load for cell in cells_of(grid)])
+    """Mean top force of the runs (replicates, bins), summed over the levels of loading; large forces dominate [N]."""
+    is_force = np.array([observables()[bin.observable].name == "top_force" and bin.phase == Phase.load for bin in bins_of(grid)])
     forces = np.exp(baseline[:, is_force])
     known = np.isfinite(forces)
     return float(np.sum(np.where(known, forces, 0).sum(axis=0) / np.maximum(1, known.sum(axis=0))))
@@ -75,7 +75,7 @@ def expect_alike_loads(library: Library, baseline: Floats, file: Path) -> None:
     """Raises InputError if runs of the scene on the experiment's packing carry another load than those of the library: at twice the load
     weight, for example, counts half as much.
 
-    `baseline`: (replicates, cells) of the library's grid. Where forces are prescribed there is nothing to compare.
+    `baseline`: (replicates, bins) of the library's grid. Where forces are prescribed there is nothing to compare.
     """
     if library.grid.force:
         return

@@ -2,7 +2,7 @@
 from dataclasses import replace
 
 from ..experiment.experiment import Experiment
-from ..observe.observation import MIN_CELLS, compared_forces
+from ..observe.observation import MIN_BINS, compared_forces
 from ..results.names import Phase
 from ..results.recording import NO_CONTACTS, NO_VECTORS
 
@@ -33,8 +33,8 @@ def _missing_forces(experiment: Experiment) -> list[str]:
     recording, count = experiment.recording, len(experiment.recording.scans)
     scans = replace(recording.scans, position=(NO_VECTORS,) * count, contacts=(NO_CONTACTS,) * count)
     displacements, known = compared_forces(replace(recording, scans=scans))
-    if known >= MIN_CELLS:
+    if known >= MIN_BINS:
         return []
     places = ", ".join(f"{1e3 * displacement:.3g}" for displacement in displacements)
     return [f"plate.csv must have frames with a force above 0 around {places} mm of displacement, where it is compared while loading and "
-            f"unloading: {known} of these {2 * len(displacements)} places have one, and {MIN_CELLS} are needed"]
+            f"unloading: {known} of these {2 * len(displacements)} places have one, and {MIN_BINS} are needed"]

@@ -8,10 +8,10 @@ import numpy as np
 from ..results.recording import Floats
 from .decision import Decision, Findings, Limits, chosen_proposal
 from .diagnosis_types import Diagnosis, NextStep, Verdict
-from .effect_fit import Candidate, fit_effect, lacking_cells
+from .effect_fit import Candidate, fit_effect, lacking_bins
 from .effects import depends_on_speed
 from .evidence import Evidence, GapData, parameters_of
-from .gap_space import CellChoice, FreeParameter, GapSpace, usable_cells
+from .gap_space import BinChoice, FreeParameter, GapSpace, usable_bins
 from .library import apart_from_mean
 from .not_measured import not_measured
 
@@ -34,7 +34,7 @@ class Measurement:
 @dataclass(frozen=True)
 class ProtocolRuns:
     """Runs of the leading effect and of its rival under another protocol of the plate. Row: replicate, with the same packing and noise in
-    both; column: cell."""
+    both; column: bin."""
 
     leader: Floats
     rival: Floats
@@ -54,7 +54,7 @@ def _squared(values: Floats) -> float:
 
 
 def _finer_noise(evidence: Evidence, noise: Floats) -> Floats:
-    """Noise if positions were measured twice as accurately: that of the diagnosis, scaled cell by cell as the scatter of the replicates."""
+    """Noise if positions were measured twice as accurately: that of the diagnosis, scaled bin by bin as the scatter of the replicates."""
     finer, coarse = (np.sqrt((_scatter_of(runs)**2).mean(axis=0)) for runs in (evidence.finer_baseline, evidence.baseline))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = finer / coarse
@@ -65,8 +65,8 @@ def _finer_noise(evidence: Evidence, noise: Floats) -> Floats:
 def _measurements_of(evidence: Evidence, data: GapData) -> list[Measurement]:
     measurements = []
 
-    def add(what: str, noise: Floats = data.noise, cells: CellChoice = data.cells, free: Sequence[FreeParameter] = data.free) -> None:
-        measurements.append(Measurement(what, data.space(cells, free, noise=noise)))
+    def add(what: str, noise: Floats = data.noise, bins: BinChoice = data.bins, free: Sequence[FreeParameter] = data.free) -> None:
+        measurements.append(Measurement(what, data.space(bins, free, noise=noise)))
 
     for k, nuisance in enumerate(evidence.nuisances):
         better = replace(data.free[k], sigma=data.free[k].sigma / TIMES_BETTER)
@@ -76,15 +76,15 @@ def _measurements_of(evidence: Evidence, data: GapData) -> list[Measurement]:
     if len(evidence.finer_baseline) > 1:
         add("measure positions twice as accurately", noise=_finer_noise(evidence, data.noise))
     if not_measured(evidence.observed, evidence.library.grid):
-        every = usable_cells(evidence.library.baseline, parameters_of(evidence), np.zeros(len(data.mean)))
-        if len(every) > len(data.cells):
-            add("measure contact forces, with the positions of grains in the same frames", cells=every)
+        every = usable_bins(evidence.library.baseline, parameters_of(evidence), np.zeros(len(data.mean)))
+        if len(every) > len(data.bins):
+            add("measure contact forces, with the positions of grains in the same frames", bins=every)
     return measurements
 
 
 def _distance(whole: GapSpace, a: Candidate, amplitude: float, b: Candidate) -> float:
     """Squared distance, in sigmas, of a signature from the closest one of another candidate."""
-    space = whole.lacking(lacking_cells([a, b]))
+    space = whole.lacking(lacking_bins([a, b]))
     gap = a.signature.at(amplitude)
     return max(0.0, _squared(space.whiten(gap)) - 2 * fit_effect(space, b, gap).score)
 
@@ -142,16 +142,16 @@ def _sharpening(measurements: Sequence[Measurement], evidence: Evidence, data: G
     return [NextStep(what, None) for _, what in sorted(found)]
 
 
-def _cells_of_protocol(runs: ProtocolRuns, baseline: Floats, known: CellChoice) -> CellChoice:
-    """The cells of the diagnosis that the runs have too, and those that no run of the baseline has."""
+def _bins_of_protocol(runs: ProtocolRuns, baseline: Floats, known: BinChoice) -> BinChoice:
+    """The bins of the diagnosis that the runs have too, and those that no run of the baseline has."""
     wanted = ~np.isfinite(baseline).any(axis=0)
     wanted[known] = True
     return np.flatnonzero(wanted & np.isfinite(runs.leader).all(axis=0) & np.isfinite(runs.rival).all(axis=0))
 
 
-def _with_noise_of_new_cells(noise: Floats, runs: Floats, cells: CellChoice) -> Floats:
-    """Replaces NaN in columns of `cells` by the scatter of the runs."""
-    new = cells[~np.isfinite(noise[:, cells]).all(axis=0)]
+def _with_noise_of_new_bins(noise: Floats, runs: Floats, bins: BinChoice) -> Floats:
+    """Replaces NaN in columns of `bins` by the scatter of the runs."""
+    new = bins[~np.isfinite(noise[:, bins]).all(axis=0)]
     noise = noise.copy()
     noise[:, new] = np.resize(_scatter_of(runs)[:, new], (len(noise), len(new)))
     return noise
@@ -183,18 +183,18 @@ def proposal_of_rival(findings: Findings, decision: Decision) -> int | None:
 
 def power_of_protocol(runs: ProtocolRuns, evidence: Evidence, data: GapData, findings: Findings, decision: Decision,
                       limits: Limits) -> float:
-    """Probability that one experiment under this protocol distinguishes the two. Noise and parameters are those of the diagnosis. A cell
+    """Probability that one experiment under this protocol distinguishes the two. Noise and parameters are those of the diagnosis. A bin
     that only the protocol has, such as the relaxation in a hold, has the scatter of the runs and depends on no parameter."""
-    cells = _cells_of_protocol(runs, evidence.baseline, data.cells)
+    bins = _bins_of_protocol(runs, evidence.baseline, data.bins)
     place = proposal_of_rival(findings, decision)
-    if not len(cells) or place is None:
+    if not len(bins) or place is None:
         return 0
     rival = findings.proposals[place]
     slope = data.candidates[rival.candidates[0]].signature.slope(rival.amplitudes[0])
     # The rival's amplitude is fitted to the new data as well.
     free = [*data.free, FreeParameter(slope, abs(rival.amplitudes[0]))]
     free = [replace(one, direction=np.where(np.isfinite(one.direction), one.direction, 0)) for one in free]
-    space = data.space(cells, free, noise=_with_noise_of_new_cells(data.noise, runs.leader, cells))
+    space = data.space(bins, free, noise=_with_noise_of_new_bins(data.noise, runs.leader, bins))
     # The product of the means of both halves of the runs has no bias by their noise.
     first, second = (space.whiten(half.mean(axis=0)) for half in np.split(runs.leader - runs.rival, [len(runs.leader) // 2]))
     return _power_to_tell(float(first @ second), limits.group_margin(chosen_proposal(findings, decision).best_gain()))

@@ -1,7 +1,7 @@
 """What an experiment has not measured, and what that would tell."""
 import numpy as np
 
-from ..observe.grid import Grid, cells_of
+from ..observe.grid import Grid, bins_of
 from ..observe.observables import observables
 from ..results.recording import Floats
 
@@ -14,6 +14,6 @@ NOT_MEASURED = {
 
 
 def not_measured(observed: Floats, grid: Grid) -> list[str]:
-    """One sentence for each file whose observables are missing in all scans; `observed`: one number per cell, NaN where unknown."""
-    seen = {observables()[cell.observable].needs for cell, value in zip(cells_of(grid), observed) if np.isfinite(value)}
+    """One sentence for each file whose observables are missing in all scans; `observed`: one number per bin, NaN where unknown."""
+    seen = {observables()[bin.observable].needs for bin, value in zip(bins_of(grid), observed) if np.isfinite(value)}
     return [text for needs, text in NOT_MEASURED.items() if needs not in seen]

@@ -6,21 +6,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .evidence import GapData
-from .gap_space import CellChoice
+from .gap_space import BinChoice
 from .gap_tests import GapStatistics, NullDistribution, gap_statistics
-from ..observe.grid import cells_each
+from ..observe.grid import bins_each
 from ..observe.observables import observables
-from ..observe.observation import MIN_CELLS
+from ..observe.observation import MIN_BINS
 
 OF_HOLDS = "relaxation", "creep"  # observables with one place only
 
 
-def without_place(cells: CellChoice, place: int, all_cells: int) -> CellChoice:
-    """The cells without all observables at one displacement and phase (`place`, the index of a cell in its observable), except relaxation and
+def without_place(bins: BinChoice, place: int, all_bins: int) -> BinChoice:
+    """The bins without all observables at one displacement and phase (`place`, the index of a bin in its observable), except relaxation and
     creep in a hold, which have one place only."""
-    observable, of_cell = np.divmod(cells, cells_each(all_cells))
+    observable, of_bin = np.divmod(bins, bins_each(all_bins))
     of_hold = [k for k, one in enumerate(observables()) if one.name in OF_HOLDS]
-    rest: CellChoice = cells[(of_cell != place) | np.isin(observable, of_hold)]
+    rest: BinChoice = bins[(of_bin != place) | np.isin(observable, of_hold)]
     return rest
 
 
@@ -29,14 +29,14 @@ class PlaceLeftOut:
     """Tests without one place."""
 
     place: int
-    data: GapData  # with the other cells
+    data: GapData  # with the other bins
     null: NullDistribution
 
 
 def places_left_out(data: GapData, seed: int) -> list[PlaceLeftOut]:
-    """One for each place, unless too few other cells remain."""
-    choices = [without_place(data.cells, place, len(data.gap)) for place in range(cells_each(len(data.gap)))]
-    others = {place: replace(data, cells=cells) for place, cells in enumerate(choices) if MIN_CELLS <= len(cells) < len(data.cells)}
+    """One for each place, unless too few other bins remain."""
+    choices = [without_place(data.bins, place, len(data.gap)) for place in range(bins_each(len(data.gap)))]
+    others = {place: replace(data, bins=bins) for place, bins in enumerate(choices) if MIN_BINS <= len(bins) < len(data.bins)}
     return [PlaceLeftOut(place, other, NullDistribution(other, seed)) for place, other in others.items()]
 
 

@@ -8,23 +8,23 @@ from ..results.recording import Floats, Ints
 
 @dataclass(eq=False)
 class Signature:
-    """mu(a) = linear a + curvature a^2 up to the largest simulated amplitude, linear beyond it. One entry per cell."""
+    """mu(a) = linear a + curvature a^2 up to the largest simulated amplitude, linear beyond it. One entry per bin."""
 
     name: str = ""
     reach: float = 0.0  # largest |a| of the paired runs
-    linear: Floats = field(default_factory=lambda: np.zeros(0))  # (cells,) per unit amplitude
-    curvature: Floats = field(default_factory=lambda: np.zeros(0))  # (cells,) per unit amplitude squared
-    slopes: Floats = field(default_factory=lambda: np.zeros((0, 0)))  # (pairs, cells) difference at the second amplitude over it
+    linear: Floats = field(default_factory=lambda: np.zeros(0))  # (bins,) per unit amplitude
+    curvature: Floats = field(default_factory=lambda: np.zeros(0))  # (bins,) per unit amplitude squared
+    slopes: Floats = field(default_factory=lambda: np.zeros((0, 0)))  # (pairs, bins) difference at the second amplitude over it
 
     def at(self, amplitude: Floats | float) -> Floats:
-        """(.., cells) mu at amplitudes (..)."""
+        """(.., bins) mu at amplitudes (..)."""
         a = np.asarray(amplitude, float)[..., None]
         inside = np.clip(a, -self.reach, self.reach)
         mu: Floats = a * self.linear + inside * (2 * a - inside) * self.curvature
         return mu
 
     def slope(self, amplitude: float) -> Floats:
-        """(cells,) d mu / d a."""
+        """(bins,) d mu / d a."""
         slope: Floats = self.linear + 2 * np.clip(amplitude, -self.reach, self.reach) * self.curvature
         return slope
 
@@ -32,7 +32,7 @@ class Signature:
         return len(self.slopes)
 
     def spread(self) -> Floats:
-        """(cells,) variance over pairs of `slopes`: differences between packings, random draws of the effect, and chaos."""
+        """(bins,) variance over pairs of `slopes`: differences between packings, random draws of the effect, and chaos."""
         return _Moments.of(self.slopes).variance * self.pairs() if self.pairs() else np.zeros_like(self.linear)
 
 
@@ -82,11 +82,11 @@ def continued_from(signature: Signature, done: float) -> Signature:
 
 
 def learn_signature(name: str, first: float, second: float, at_first: Floats, at_second: Floats) -> Signature:
-    """From differences of paired runs (pairs, cells) at two amplitudes.
+    """From differences of paired runs (pairs, bins) at two amplitudes.
 
-    Values are shrunk towards zero according to the scatter over pairs (positive-part James & Stein 1961, cell by cell), the curvature
+    Values are shrunk towards zero according to the scatter over pairs (positive-part James & Stein 1961, bin by bin), the curvature
     first. Pairs with a failed run (all NaN) are left out. With fewer than two complete pairs, it is a straight line through the results at
-    the amplitude at which runs succeed; NaN if they succeed at neither. The same holds for a single cell without a value in some pair: a
+    the amplitude at which runs succeed; NaN if they succeed at neither. The same holds for a single bin without a value in some pair: a
     force whose logarithm is observed may vanish with a large effect only.
     """
     needed = min(2, len(at_first))
@@ -126,7 +126,7 @@ def _parabola_signature(name: str, first: float, second: float, at_first: Floats
 
 
 def _fill_in(s: Signature, other: Signature) -> None:
-    """Takes the cells in which `s` has no value from `other`, which has the same pairs."""
+    """Takes the bins in which `s` has no value from `other`, which has the same pairs."""
     missing = ~(np.isfinite(s.linear) & np.isfinite(s.curvature))
     s.linear[missing] = other.linear[missing]
     s.curvature[missing] = other.curvature[missing]

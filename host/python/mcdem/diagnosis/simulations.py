@@ -45,7 +45,7 @@ class OtherProtocol:
 
 
 class Simulations:
-    """Results are (simulations, cells), NaN where a simulation failed. Simulations are kept in a folder and never repeated."""
+    """Results are (simulations, bins), NaN where a simulation failed. Simulations are kept in a folder and never repeated."""
 
     def __init__(self, plan: Plan, store: Path, device: str) -> None:
         """`device`: a choice, as for --device; it is opened when something must be simulated, and shared by all of the same choice."""
@@ -118,7 +118,7 @@ class Simulations:
             "program": engine.__version__.partition(" ")[0]}  # only the version; a commit need not change results
 
     def observed(self) -> Floats:
-        """(experiments, cells)"""
+        """(experiments, bins)"""
         comparison = self.plan.comparison
         return np.array([observe(one.recording, comparison.grid, comparison.material, comparison.discard) for one in self.plan.experiments])
 

@@ -14,7 +14,7 @@ from ..experiment.instrument import measured
 from ..files import read_whole, write_whole
 from ..look import Path, is_there
 from ..observe.contact_residuals import Material
-from ..observe.grid import Grid, cells_of
+from ..observe.grid import Grid, bins_of
 from ..observe.observables import observables
 from ..observe.observation import observe
 from ..outputs import make_folder
@@ -62,7 +62,7 @@ class ObservationStore:
         make_folder(self.folder)
 
     def find(self, name: str) -> Floats | None:
-        """(cells,); None if it is missing or damaged. A digest of the numbers is stored before them."""
+        """(bins,); None if it is missing or damaged. A digest of the numbers is stored before them."""
         file = self.folder / f"{name}.obs"
         if not is_there(file):
             return None
@@ -122,13 +122,13 @@ class Observer:
         self.description, self.store, self.comparison, self.device = description, store, comparison, device
 
     def observe(self, trials: Sequence[Trial], progress: Progress | None = None, failed: Callable[[int, str], object] = ignore) -> Floats:
-        """(trials, cells); NaN where a simulation failed. Results in the store are reused, and new ones are stored as they are computed.
+        """(trials, bins); NaN where a simulation failed. Results in the store are reused, and new ones are stored as they are computed.
 
         `failed` receives the index of a trial and why its simulation failed; results in the store have no reason.
         """
         names = self.names(trials)
         stored = self._stored(trials, names)
-        rows = np.full((len(trials), self._cells), np.nan)
+        rows = np.full((len(trials), self._bins), np.nan)
         for t, observation in stored.items():
             rows[t] = observation
         jobs, done = jobs_of([t for t in range(len(trials)) if t not in stored], names), 0
@@ -161,15 +161,15 @@ class Observer:
         return [simulation_name(trial, self.description) for trial in trials]
 
     @property
-    def _cells(self) -> int:
-        return len(cells_of(self.comparison.grid))
+    def _bins(self) -> int:
+        return len(bins_of(self.comparison.grid))
 
     def _stored(self, trials: Sequence[Trial], names: Sequence[str]) -> dict[int, Floats]:
         """The observations that the store has, by trial; without those whose recording it should have and lacks."""
         stored = {}
         for t, (trial, name) in enumerate(zip(trials, names, strict=True)):
             found = self.store.find(observation_name(name, self.comparison, trial))
-            if found is not None and len(found) == self._cells and (not trial.recorded or self.store.has_recording(name)):
+            if found is not None and len(found) == self._bins and (not trial.recorded or self.store.has_recording(name)):
                 stored[t] = found
         return stored
 

@@ -21,14 +21,14 @@ EXPERIMENT: Values = {"color": INK, "linestyle": "", "marker": "o", "markersize"
 @styled
 def where(source: Source, axes: Any = None) -> Any:
     """Gap by observable and displacement, in sigmas of its noise. Left: stated parameters; right: parameters fitted
-    within their uncertainty. Framed: significant among all cells. `axes`: two."""
+    within their uncertainty. Framed: significant among all bins. `axes`: two."""
     values = read(source, "where")
     if axes is None:
         axes = new_axes(PAGE, 28 + 3.6 * len(values["observables"]), ncols=2, sharey=True)
     scale = matplotlib.colors.Normalize(-values["colour_range"], values["colour_range"])
     for place, panel in zip(axes, values["panels"]):
-        for cell in panel["cells"]:
-            draw_cell(place, values, cell, scale)
+        for bin in panel["cells"]:
+            draw_bin(place, values, bin, scale)
         set_columns(place, values, panel["words"])
     axes[0].set_yticks(range(len(values["observables"])), [plain(words) for words in values["observables"]])
     axes[0].set_ylim(len(values["observables"]) - 0.5, -0.5)
@@ -37,10 +37,10 @@ def where(source: Source, axes: Any = None) -> Any:
     return axes
 
 
-def draw_cell(axes: Any, values: Values, cell: Values, scale: Any) -> None:
-    x, row, score = values["columns"][cell["column"]]["x"], cell["row"], cell["z_score"]
+def draw_bin(axes: Any, values: Values, bin: Values, scale: Any) -> None:
+    x, row, score = values["columns"][bin["column"]]["x"], bin["row"], bin["z_score"]
     axes.add_patch(matplotlib.patches.Rectangle((x - 0.49, row - 0.49), 0.98, 0.98, facecolor=BELOW_ABOVE(scale(score)), linewidth=0))
-    if not cell["stands_out"]:
+    if not bin["stands_out"]:
         return
     axes.add_patch(matplotlib.patches.Rectangle((x - 0.45, row - 0.45), 0.9, 0.9, fill=False, edgecolor="#111111", linewidth=0.7))
     if len(values["columns"]) <= MAX_NUMBERS:

@@ -52,19 +52,19 @@ class Grid:
 
 
 @dataclass(frozen=True)
-class Cell:
+class Bin:
     observable: int  # index in observables()
     phase: Phase
     displacement: float  # [m]
 
 
-def cells_of(grid: Grid) -> list[Cell]:
-    """The cells of a grid: by observable, then phase, then displacement."""
-    return [Cell(*key) for key in product(range(len(observables())), PHASES, grid.displacement)]
+def bins_of(grid: Grid) -> list[Bin]:
+    """The bins of a grid: by observable, then phase, then displacement."""
+    return [Bin(*key) for key in product(range(len(observables())), PHASES, grid.displacement)]
 
 
-def cells_each(count: int) -> int:
-    """Number of cells of each observable, of `count` cells of a grid."""
+def bins_each(count: int) -> int:
+    """Number of bins of each observable, of `count` bins of a grid."""
     return count // len(observables())
 
 

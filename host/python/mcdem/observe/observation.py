@@ -10,16 +10,16 @@ from .grid import PHASES, Grid, grid_of, offsets
 from .observables import MIN_CONTACTS, groups, index_of, observables
 from .seen_scans import SeenScans
 
-MIN_CELLS = 4  # that an experiment and its simulations must have in common
+MIN_BINS = 4  # that an experiment and its simulations must have in common
 LEAST_WEIGHT = 0.3  # of the scans around a displacement, each of which has at most 1
 LEAST_SPREAD = 1e-3  # of their places, relative; below it there is no slope
 NEAR = 0.1  # a mean without a slope counts if its place is that near
 
 
 def observe(recording: Recording, grid: Grid, material: Material, discard: int = 0) -> Floats:
-    """(cells,) in the order of cells_of(grid); NaN if the recording does not determine it.
+    """(bins,) in the order of bins_of(grid); NaN if the recording does not determine it.
 
-    Cycles after `discard` are averaged. A hold is assigned to the nearest displacement. Within the width of a cell a straight line is fitted
+    Cycles after `discard` are averaged. A hold is assigned to the nearest displacement. Within the width of a bin a straight line is fitted
     through the scans (local linear regression, triangular weights), so the recordings that are compared need not have scans at the same
     displacements.
     """

@@ -3,7 +3,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from ..convergence.convergence_types import CellError, Convergence, unit_of
+from ..convergence.convergence_types import BinError, Convergence, unit_of
 from ..observe.observables import observables
 from .diagnosis_words import words_of
 from .labels import style_number
@@ -12,15 +12,15 @@ from .text_table import Column, TextTable
 X_LABEL = "largest error over phases and displacements / limit, ± two standard errors"
 
 
-def _size(cell: CellError) -> float:
-    return abs(cell.over_limit)
+def _size(bin: BinError) -> float:
+    return abs(bin.over_limit)
 
 
-def _worst(convergence: Convergence) -> Iterator[tuple[str, list[CellError | None]]]:
+def _worst(convergence: Convergence) -> Iterator[tuple[str, list[BinError | None]]]:
     """For each observable with errors, the largest over its limit from each cause."""
     for observable in (one.name for one in observables()):
-        found = [[cell for cell in cause.errors if cell.observable == observable] for cause in convergence.causes]
-        worst = [max(cells, key=_size) if cells else None for cells in found]
+        found = [[bin for bin in cause.errors if bin.observable == observable] for cause in convergence.causes]
+        worst = [max(bins, key=_size) if bins else None for bins in found]
         if any(worst):
             yield observable, worst
 
@@ -28,11 +28,11 @@ def _worst(convergence: Convergence) -> Iterator[tuple[str, list[CellError | Non
 def table_of_convergence(convergence: Convergence) -> TextTable:
     """Row: observable; column: cause. The largest error over phases and displacements with its standard error, in per cent for forces,
     otherwise in standard deviations of one packing's replicates; a star marks values beyond their limit."""
-    def words(cell: CellError | None) -> str:
-        if cell is None:
+    def words(bin: BinError | None) -> str:
+        if bin is None:
             return "-"
-        unit, sign = unit_of(cell, convergence.limits)
-        return f"{cell.error / unit:+.2f} +- {cell.standard_error / unit:.2f} {sign}{' *' if cell.beyond else '  '}"
+        unit, sign = unit_of(bin, convergence.limits)
+        return f"{bin.error / unit:+.2f} +- {bin.standard_error / unit:.2f} {sign}{' *' if bin.beyond else '  '}"
 
     columns = [Column("observable", "left"), *(Column(cause.cause) for cause in convergence.causes)]
     rows = [[observable, *map(words, worst)] for observable, worst in _worst(convergence)]
@@ -46,11 +46,11 @@ def table_of_convergence(convergence: Convergence) -> TextTable:
 
 def convergence_figure_values(convergence: Convergence) -> dict[str, Any]:
     """Values of the figure `convergence` (figure_values.py): errors of every observable from each cause, over their limits."""
-    def values(cell: CellError | None) -> dict[str, float | None] | None:
-        if cell is None:
+    def values(bin: BinError | None) -> dict[str, float | None] | None:
+        if bin is None:
             return None
-        error = cell.standard_error / cell.limit
-        return {"over_limit": cell.over_limit, "standard_error": error if math.isfinite(error) else None}
+        error = bin.standard_error / bin.limit
+        return {"over_limit": bin.over_limit, "standard_error": error if math.isfinite(error) else None}
 
     causes = [{"words": cause.cause, "colour": style_number(k).colour, "marker": style_number(k).marker}
               for k, cause in enumerate(convergence.causes)]

@@ -19,7 +19,7 @@ GAP_COLOURS = [[0, "var(--cool-3)"], [0.2, "var(--cool-2)"], [0.375, "var(--cool
 
 
 def diagnosis_charts(diagnosis: Diagnosis) -> list[Chart]:
-    """Those that there are. where: a heat map before and after recalibration, cells that stand out framed. which: candidates by score,
+    """Those that there are. where: a heat map before and after recalibration, bins that stand out framed. which: candidates by score,
     with their amplitudes over what these data can detect. how_far: the top force. gap_left: the gap before and after; neither where
     the data held out show none."""
     values = diagnosis_figure_values(diagnosis)
@@ -45,16 +45,16 @@ def _rows_axis(words: list[str], **axis: Any) -> dict[str, Any]:
     return {"tickvals": list(range(len(words))), "ticktext": words, "showgrid": False, "ticks": "", **axis}
 
 
-def _cells_trace(values: Values, panel: Values, axis: str) -> go.Heatmap:
-    """A panel's cells, `axis` "" or "2". The trace has a column more for every gap between phases."""
+def _bins_trace(values: Values, panel: Values, axis: str) -> go.Heatmap:
+    """A panel's bins, `axis` "" or "2". The trace has a column more for every gap between phases."""
     columns = values["columns"]
     edges = sorted({round(column["x"] + side, 6) for column in columns for side in (-0.5, 0.5)})
     scores, words = (np.full((len(values["observables"]), len(edges) - 1), None) for _ in range(2))
-    for cell in panel["cells"]:
-        column, z = columns[cell["column"]], cell["z_score"]
-        place = cell["row"], edges.index(round(column["x"] - 0.5, 6))
+    for bin in panel["cells"]:
+        column, z = columns[bin["column"]], bin["z_score"]
+        place = bin["row"], edges.index(round(column["x"] - 0.5, 6))
         when = "both phases" if column["phase"] == "whole cycle" else column["phase"]
-        where = f"{values['observables'][cell['row']]}, {when} at {column['displacement_mm']:.2f} mm"
+        where = f"{values['observables'][bin['row']]}, {when} at {column['displacement_mm']:.2f} mm"
         scores[place], words[place] = z, f"{plot_text(where)}<br>{z:.2f} sigma"
     return go.Heatmap(
         name=panel["words"], x=edges, y0=0, dy=1, z=scores.tolist(), text=words.tolist(), hoverinfo="text", xaxis=f"x{axis}",
@@ -69,10 +69,10 @@ def _frame(x: float, row: int, axis: str) -> dict[str, Any]:
 
 
 def _numbers_trace(values: Values, framed: list[Values], axis: str) -> go.Scatter:
-    """Numbers in the framed cells."""
-    scores = [cell["z_score"] for cell in framed]
+    """Numbers in the framed bins."""
+    scores = [bin["z_score"] for bin in framed]
     return go.Scatter(
-        mode="text", x=[values["columns"][cell["column"]]["x"] for cell in framed], y=[cell["row"] for cell in framed],
+        mode="text", x=[values["columns"][bin["column"]]["x"] for bin in framed], y=[bin["row"] for bin in framed],
         text=[f"{z:.{1 if abs(z) < 10 else 0}f}" for z in scores], xaxis=f"x{axis}", hoverinfo="skip", showlegend=False,
         textfont={"size": 10, "color": ["var(--on-strong)" if abs(z) > 0.6 * values["colour_range"] else "#111111" for z in scores]})
 
@@ -100,9 +100,9 @@ def _headings(values: Values, heading: str, axis: str) -> list[dict[str, Any]]:
 def _where(values: Values, threshold: float) -> Chart:
     observables, traces, shapes, notes = [plot_text(words) for words in values["observables"]], [], [], []
     for axis, panel in zip(("", "2"), values["panels"]):
-        framed = [cell for cell in panel["cells"] if cell["stands_out"]]
-        traces.append(_cells_trace(values, panel, axis))
-        shapes += [_frame(values["columns"][cell["column"]]["x"], cell["row"], axis) for cell in framed]
+        framed = [bin for bin in panel["cells"] if bin["stands_out"]]
+        traces.append(_bins_trace(values, panel, axis))
+        shapes += [_frame(values["columns"][bin["column"]]["x"], bin["row"], axis) for bin in framed]
         if framed and len(values["columns"]) <= MOST_NUMBERED_COLUMNS:
             traces.append(_numbers_trace(values, framed, axis))
         notes += _headings(values, panel["words"], axis)

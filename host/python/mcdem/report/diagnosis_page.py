@@ -184,7 +184,7 @@ def _effects(diagnosis: Diagnosis) -> TextTable:
 
 def _observables(diagnosis: Diagnosis) -> TextTable:
     """Meanings of the rows of the figure."""
-    shown = {cell.observable for cell in diagnosis.cells}
+    shown = {bin.observable for bin in diagnosis.cells}
     return table_of(["<observable", "<what it is"], ([words_of(one.name), one.meaning] for one in observables() if one.name in shown))
 
 

@@ -1,7 +1,7 @@
 """A diagnosis in a few lines, and which of its values stand out."""
 from math import inf, isfinite
 
-from ..diagnosis.diagnosis_types import Diagnosis, Explanation, WhereCell, WhereEntry
+from ..diagnosis.diagnosis_types import Diagnosis, Explanation, WhereBin, WhereEntry
 from .diagnosis_words import check_words, listed, listed_names, missing_words, next_words, p_words, percent, where_words, words_of
 from .labels import one_line, shortened
 from .verdict import MOST_LIMITS, reduction_words, refined, verdict_words
@@ -60,25 +60,25 @@ def strongest_first(entries: tuple[WhereEntry, ...]) -> list[WhereEntry]:
     return sorted(entries, key=lambda entry: -abs(entry.z_score) if isfinite(entry.z_score) else inf)
 
 
-def _is_within(cell: WhereCell, entry: WhereEntry) -> bool:
+def _is_within(bin: WhereBin, entry: WhereEntry) -> bool:
     first, last = entry.displacement_mm
-    return (cell.observable == entry.observable and entry.phase in ("", cell.phase)
-            and first - SAME_DISPLACEMENT_MM <= cell.displacement_mm <= last + SAME_DISPLACEMENT_MM)
+    return (bin.observable == entry.observable and entry.phase in ("", bin.phase)
+            and first - SAME_DISPLACEMENT_MM <= bin.displacement_mm <= last + SAME_DISPLACEMENT_MM)
 
 
-def stands_out(diagnosis: Diagnosis, cell: WhereCell, refitted: bool) -> bool:
-    """Whether "where" frames the cell. Where the threshold is not known, the cells of the entries stand out before recalibration, and
+def stands_out(diagnosis: Diagnosis, bin: WhereBin, refitted: bool) -> bool:
+    """Whether "where" frames the bin. Where the threshold is not known, the bins of the entries stand out before recalibration, and
     none after."""
     if diagnosis.where_threshold > 0:
-        return abs(cell.z_score_refitted if refitted else cell.z_score) >= diagnosis.where_threshold
-    return not refitted and any(_is_within(cell, entry) for entry in diagnosis.where)
+        return abs(bin.z_score_refitted if refitted else bin.z_score) >= diagnosis.where_threshold
+    return not refitted and any(_is_within(bin, entry) for entry in diagnosis.where)
 
 
 def _framed_line(diagnosis: Diagnosis) -> str:
-    """Without entries: single cells beyond the threshold, so that the text agrees with the figure."""
-    refitted = [cell.z_score_refitted for cell in diagnosis.cells if isfinite(cell.z_score_refitted) and stands_out(diagnosis, cell, True)]
-    framed = [(z, cell) for cell in diagnosis.cells for z in [cell.z_score_refitted if refitted else cell.z_score]
-              if isfinite(z) and stands_out(diagnosis, cell, bool(refitted))]
+    """Without entries: single bins beyond the threshold, so that the text agrees with the figure."""
+    refitted = [bin.z_score_refitted for bin in diagnosis.cells if isfinite(bin.z_score_refitted) and stands_out(diagnosis, bin, True)]
+    framed = [(z, bin) for bin in diagnosis.cells for z in [bin.z_score_refitted if refitted else bin.z_score]
+              if isfinite(z) and stands_out(diagnosis, bin, bool(refitted))]
     if not framed:
         return "no single value stands out from the noise."
     z, strongest = max(framed, key=lambda one: abs(one[0]))

@@ -2,7 +2,7 @@
 from math import ceil, isfinite
 from typing import Any
 
-from ..diagnosis.diagnosis_types import Cause, Diagnosis, GapReduction, WhereCell
+from ..diagnosis.diagnosis_types import Cause, Diagnosis, GapReduction, WhereBin
 from ..json_text import finite
 from .diagnosis_text import SAME_DISPLACEMENT_MM, stands_out
 from .diagnosis_words import amount_with_error, percent, words_of
@@ -20,7 +20,7 @@ Values = dict[str, Any]
 def diagnosis_figure_values(diagnosis: Diagnosis) -> Values:
     """Of the figures that there are."""
     values = {}
-    if any(isfinite(cell.z_score) and isfinite(cell.displacement_mm) for cell in diagnosis.cells):
+    if any(isfinite(bin.z_score) and isfinite(bin.displacement_mm) for bin in diagnosis.cells):
         values["where"] = _where(diagnosis)
     if diagnosis.ranking:
         values["which"] = _which(diagnosis)
@@ -35,12 +35,12 @@ def _in_time(place: tuple[str, float]) -> tuple[int, str, float]:
     return {"load": 0, "unload": 1}.get(phase, 2), phase, -displacement_mm if phase == "unload" else displacement_mm
 
 
-def _columns_of(cells: list[WhereCell]) -> tuple[list[Values], float, dict[tuple[str, float], int]]:
+def _columns_of(bins: list[WhereBin]) -> tuple[list[Values], float, dict[tuple[str, float], int]]:
     """The columns of the figure "where" in the order of the measurement, with their centres `x`; their total width, a column being 1
     wide; and the column of each phase and displacement."""
     columns: list[Values] = []
     width, place, last = 0., {}, ("", -SAME_DISPLACEMENT_MM)
-    for phase, displacement in sorted({(cell.phase, cell.displacement_mm) for cell in cells}, key=_in_time):
+    for phase, displacement in sorted({(bin.phase, bin.displacement_mm) for bin in bins}, key=_in_time):
         if not columns or phase != last[0] or abs(displacement - last[1]) >= SAME_DISPLACEMENT_MM:
             width += PHASE_GAP * (bool(columns) and phase != last[0])
             columns.append({"phase": phase + "ing" if phase else "whole cycle", "displacement_mm": displacement, "x": width + 0.5})
@@ -50,17 +50,17 @@ def _columns_of(cells: list[WhereCell]) -> tuple[list[Values], float, dict[tuple
 
 
 def _where(diagnosis: Diagnosis) -> Values:
-    cells = [cell for cell in diagnosis.cells if isfinite(cell.displacement_mm)]
-    observables = list(dict.fromkeys(cell.observable for cell in cells))
-    columns, width, place = _columns_of(cells)
+    bins = [bin for bin in diagnosis.cells if isfinite(bin.displacement_mm)]
+    observables = list(dict.fromkeys(bin.observable for bin in bins))
+    columns, width, place = _columns_of(bins)
 
     def panel(words: str, refitted: bool) -> Values:
-        scores = [(cell, cell.z_score_refitted if refitted else cell.z_score) for cell in cells]
+        scores = [(bin, bin.z_score_refitted if refitted else bin.z_score) for bin in bins]
         return {"words": words, "cells": [
-            {"row": observables.index(cell.observable), "column": place[cell.phase, cell.displacement_mm], "z_score": z,
-             "stands_out": stands_out(diagnosis, cell, refitted)} for cell, z in scores if isfinite(z)]}
+            {"row": observables.index(bin.observable), "column": place[bin.phase, bin.displacement_mm], "z_score": z,
+             "stands_out": stands_out(diagnosis, bin, refitted)} for bin, z in scores if isfinite(z)]}
 
-    largest = max((abs(cell.z_score) for cell in cells if isfinite(cell.z_score)), default=0)
+    largest = max((abs(bin.z_score) for bin in bins if isfinite(bin.z_score)), default=0)
     return {"x_label": "plate displacement [mm]", "colour_label": "measured minus simulated [sigma of the noise]",
             # Outliers must not hide all others, and noise must not look like a gap.
             "colour_range": min(max(float(ceil(largest)), 6.), 8.), "width": width,
