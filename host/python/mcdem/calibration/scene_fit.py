@@ -1,7 +1,7 @@
 """Several keys of a scene, fitted together to the curves of an experiment."""
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -166,11 +166,13 @@ class _Work:
         found = self.fit.minimum
         self.rounds.append(FitRound(x, self._target.misfit(y), found.x if found else self.fit.x[self.fit.best],
                                     found.standard_error if found else np.full(len(self.keys), math.nan)))
-        if len(self.rounds) > 1 and self.fit.end is None:
-            result, moved = self.result(), np.abs(self.rounds[-1].values - self.rounds[-2].values)
+        result = self.result()
+        if len(self.rounds) > 1 and result.end is None:
+            moved = np.abs(self.rounds[-1].values - self.rounds[-2].values)
             if (np.fmax(moved, result.standard_error_of_fit) <= SETTLED * result.standard_error).all():
                 self.fit.end = End.converged
-        return self.result()
+                result = replace(result, end=self.fit.end)
+        return result
 
     def _changes(self, values: Floats) -> dict[str, float]:
         return {name: value for key, one in zip(self.keys, values.tolist(), strict=True) for name, value in key.values(one).items()}

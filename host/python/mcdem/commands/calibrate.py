@@ -1,6 +1,7 @@
 """mcdem calibrate: keys of a scene from an experiment; gamma of MC-DEM, or E of another model, from its top force."""
 import argparse
 import contextlib
+import functools
 import math
 from typing import TYPE_CHECKING
 
@@ -103,33 +104,28 @@ def run(options: argparse.Namespace) -> int:
 def _fit(options: argparse.Namespace) -> int:
     """Several keys."""
     from ..calibration.calibrate import fit_document
-    from ..calibration.scene_fit import FitOptions, SceneFit, fit_scene
-    from ..json_text import json_text
+    from ..calibration.scene_fit import FitOptions, fit_scene
     from ..observe.reference import load_reference
-    from ..outputs import CALIBRATION, expect_replaceable, output_folder, remove_temporaries, replace_own
+    from ..outputs import CALIBRATION, expect_replaceable, output_folder, remove_temporaries
     from ..report.scene_fit import fit_text, round_text
+    from .rounds import kept_words, told_and_kept
     reference = load_reference(options.experiment, options.setting, options.discard)
     scene = read_scene(options)
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(output_folder(options.out)) if options.out else None
-        if folder:
-            expect_replaceable(folder / "calibration.json", CALIBRATION)
+        file = folder / "calibration.json" if folder else None
+        if folder and file:
+            expect_replaceable(file, CALIBRATION)
             remove_temporaries(folder / "trials")
         wanted = FitOptions(options.fit, options.compare, options.model or "", options.tolerance, options.batch, options.rounds,
                             options.device, folder / "trials" if folder else None)
-        kept = "trials are kept; run the same command again to continue" if folder else "nothing is kept; --out keeps trials"
-        with interruptible(kept), Progress() as progress:
-            def after_round(found: SceneFit) -> None:
-                progress.clear()
-                say(round_text(found))
-                if folder:
-                    document = fit_document(found, scene.text, reference.label)
-                    replace_own(folder / "calibration.json", CALIBRATION, json_text(document, sort_keys=True).encode())
-
+        with interruptible(kept_words(folder)), Progress() as progress:
+            document = functools.partial(fit_document, scene=scene.text, reference=reference.label)
+            after_round = told_and_kept(progress, round_text, file, CALIBRATION, document)
             result = fit_scene(scene, reference.replicas, wanted, progress.show, after_round)
         print(fit_text(result))
-        if folder:
-            print(f"wrote {folder / 'calibration.json'}")
+        if file:
+            print(f"wrote {file}")
     return 0
 
 

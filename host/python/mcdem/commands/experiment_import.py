@@ -89,8 +89,9 @@ def _known(settings: "Experiment", options: argparse.Namespace) -> "Known":
     from ..importing.mapping import Known
     if (options.mass is None) != (options.solid_density is None):
         raise InputError("--mass: needs --solid-density, and the other way round: their ratio is the volume of the grains")
-    known = {"area": options.area, "solid_volume": options.mass / options.solid_density if options.mass else None, "youngs_modulus": settings.materials.get("grains.youngs_modulus"),
-             "poisson_ratio": settings.materials.get("grains.poisson_ratio"), "voxel_size": options.voxel_size}
+    known = {"area": options.area, "solid_volume": options.mass / options.solid_density if options.mass else None,
+             "youngs_modulus": settings.materials.get("grains.youngs_modulus"), "poisson_ratio": settings.materials.get("grains.poisson_ratio"),
+             "voxel_size": options.voxel_size}
     recording = settings.recording
     return Known(box=(recording.box.size_x, recording.box.size_y), shape=recording.box.shape, plate_start=recording.plate_start,
                  programme=recording.has_programme, **{name: value for name, value in known.items() if value is not None})

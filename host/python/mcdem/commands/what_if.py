@@ -1,11 +1,11 @@
 """mcdem what-if: keys of a scene moved alone until a quantity is the measured one."""
 import argparse
 import contextlib
+import functools
 
 from ..errors import InputError
 from ..parts import interruptible
 from ..problems import to_number
-from ..program import say
 from ..progress import Progress
 from .command_line import above_zero, add_numbers, given, names, output_path, whole_in
 from .scene_options import add_device_option, add_scene_options, read_scene
@@ -55,37 +55,32 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from ..calibration.what_if import WhatIf, WhatIfOptions, what_if
-    from ..json_text import json_text
+    from ..calibration.what_if import WhatIfOptions, what_if
     from ..observe.reference import load_reference
-    from ..outputs import WHAT_IF, expect_replaceable, output_folder, remove_temporaries, replace_own
+    from ..outputs import WHAT_IF, expect_replaceable, output_folder, remove_temporaries
     from ..report.draw import draw_figures, draw_if_possible, expect_replaceable_figures
     from ..report.what_if import round_text, what_if_document, what_if_figure_values, what_if_text
+    from .rounds import kept_words, told_and_kept
     if not options.experiment and not options.target:
         raise InputError("--target: is required without --experiment, as in --target top_force=15.5")
     reference = load_reference(options.experiment, options.setting, options.discard) if options.experiment else None
     scene = read_scene(options)
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(output_folder(options.out)) if options.out else None
-        if folder:
-            expect_replaceable(folder / "what_if.json", WHAT_IF)
+        file = folder / "what_if.json" if folder else None
+        if folder and file:
+            expect_replaceable(file, WHAT_IF)
             expect_replaceable_figures(folder, ("what_if",))
             remove_temporaries(folder / "trials")
         wanted = WhatIfOptions(options.keys, options.target, options.show, **given(options, NUMBERS), device=options.device,
                                folder=folder / "trials" if folder else None)
-        kept = "trials are kept; run the same command again to continue" if folder else "nothing is kept; --out keeps trials"
-        with interruptible(kept), Progress() as progress:
-            def after_round(found: WhatIf) -> None:
-                progress.clear()
-                say(round_text(found))
-                if folder:
-                    document = what_if_document(found, scene.text, reference.label if reference else "")
-                    replace_own(folder / "what_if.json", WHAT_IF, json_text(document, sort_keys=True).encode())
-
+        document = functools.partial(what_if_document, scene=scene.text, reference=reference.label if reference else "")
+        with interruptible(kept_words(folder)), Progress() as progress:
+            after_round = told_and_kept(progress, round_text, file, WHAT_IF, document)
             result = what_if(scene, reference.replicas if reference else None, wanted, progress.show, after_round)
         print(what_if_text(result), end="")
-        if folder is not None:
-            print(f"wrote\n  {folder / 'what_if.json'}", flush=True)
+        if file:
+            print(f"wrote\n  {file}", flush=True)
             for figure in draw_if_possible(lambda: draw_figures(options.out, {"what_if": what_if_figure_values(result)})):
                 print(f"  {figure}")
     return 0

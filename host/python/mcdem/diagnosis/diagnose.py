@@ -95,12 +95,11 @@ class _Diagnosing:
         self.packings: int = self.facts["packings"]
         self.hindered: list[str] = list(self.facts["hindered"])
         self.refinements: list[Refinement] = []
-        self.evidence: Evidence | None = None
         self.has_metrics = options.paper_metrics and not self.facts["has_programme"]  # they compare levels of strokes
 
     def run(self) -> Diagnosis:
         self._tell_what_is_left_out()
-        self.evidence = evidence = self._gather()
+        evidence = self._gather()
         inference = self._infer(evidence)
         has_gap = self._verdict(inference) != Verdict.no_gap
         if self.options.refine > 1 and has_gap and (motion := self.simulations.neglected_motion(MAX_SLOWDOWN)):
@@ -131,21 +130,19 @@ class _Diagnosing:
         fits = [self._amplitudes(inference, proposal, fit) for proposal, fit in runs.fits]
         if self.has_metrics and runs.purpose == "held-out confirmation":
             self.simulations.record(fits[0], self.options.confirmations, self._stage("recordings"))
-        return self._simulate(fits, runs.purpose)
+        simulated = self._simulate(fits, runs.purpose)
+        return [one + self._luck_of_packings(inference.evidence) for one in simulated] if self.facts["drawn"] else simulated
 
     def _simulate(self, fits: list[Amplitudes], stage: str, protocol: int | None = None) -> list[Floats]:
         """(confirmations, bins) for each fit: means over the packings."""
         rows = self.simulations.fitted(fits, self.options.confirmations, protocol, self._stage(stage))
         each = self.options.confirmations * self.packings
-        runs = [mean_over_packings(rows[k * each:(k + 1) * each], self.packings) for k in range(len(fits))]
-        return [one + self._luck_of_packings() for one in runs] if self.facts["drawn"] and protocol is None else runs
+        return [mean_over_packings(rows[k * each:(k + 1) * each], self.packings) for k in range(len(fits))]
 
-    def _luck_of_packings(self) -> Floats:
+    def _luck_of_packings(self, evidence: Evidence) -> Floats:
         """(bins,) Mean of the baseline minus that of the packings that confirm, for packings that are drawn: what the few do not share with all
         is known from the baseline (a control variate)."""
-        assert self.evidence
-        baseline = self.evidence.baseline
-        return column_means(baseline) - column_means(baseline[:self.options.confirmations])
+        return column_means(evidence.baseline) - column_means(evidence.baseline[:self.options.confirmations])
 
     def _amplitudes(self, inference: Inference, proposal: int, fit: PartialFit) -> Amplitudes:
         """Of the effects of a proposal, and of all nuisances."""

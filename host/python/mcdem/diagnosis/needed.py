@@ -10,8 +10,7 @@ from ..results.recording import NO_CONTACTS, NO_VECTORS
 def needed_to_diagnose(experiment: Experiment) -> list[str]:
     """Data that `mcdem diagnose` needs and the experiment lacks, each with a remedy; empty if it can be diagnosed."""
     scans, errors, needed = experiment.recording.scans, experiment.measurement, []
-    has_grains = len(scans) > 0 and len(scans.position[0]) > 0
-    if not has_grains and (any(map(len, scans.position)) or any(map(len, scans.contacts))):
+    if not experiment.recording.has_start and (any(map(len, scans.position)) or any(map(len, scans.contacts))):
         needed.append("grains.csv must have the positions of frame 0, from which simulations start, as it has those of other frames or "
                       "contacts.csv has forces (a row: 0,grain,x_m,y_m,z_m,diameter_m); without any positions and contact forces the force "
                       "on the plate is compared with packings that are drawn")
@@ -19,7 +18,7 @@ def needed_to_diagnose(experiment: Experiment) -> list[str]:
         needed.append("plate.csv must have loading frames below plate.start")
     else:
         needed += _missing_forces(experiment)
-    if has_grains and not errors.position_error > 0:
+    if experiment.recording.has_start and not errors.position_error > 0:
         needed.append("experiment.toml must state how well positions are known: replicates of the packing are moved by it, and without it "
                       "they have no scatter to compare a gap with; add to [measurement] a line such as `position_error = 1e-4 # [m]`")
     if any(map(len, scans.contacts)) and not errors.force_error > 0:

@@ -125,7 +125,7 @@ def plan_of(scene: engine.Scene, measured: Sequence[Experiment], candidates: Seq
     _note_cycles(measured[0], experiments[0], note)
     grid = min((grid_of(one.recording) for one in experiments), key=lambda one: one.stroke)
     _expect_alike(experiments, grid)
-    if has_grains(experiments[0]):
+    if experiments[0].recording.has_start:
         packings = [Packing(_model_of(scene, one), [_start_of(one)]) for one in experiments]
     else:
         note(f"{measured[0].name}: grains.csv has no positions of frame 0: packings are drawn as the scene generates them, and their scatter is "
@@ -139,7 +139,7 @@ def plan_of_others(scene: engine.Scene, measured: Experiment, packings: int, can
     """Simulations of `packings` others of the same kind, for a library that several experiments share."""
     engine.expect_plain_strokes(scene, "a challenge")
     experiment = _compared_cycles(scene, measured)
-    if not has_grains(experiment):
+    if not experiment.recording.has_start:
         drawn = _drawn(scene, experiment, packings * replicates, seed, 0)
         return _filled([experiment], [drawn], grid_of(experiment.recording), candidates, packings * replicates, packings * pairs, seed, False)
     plate = {key: scene._values[key] for key in ("plate.start", "plate.end")}
@@ -162,7 +162,7 @@ def _filled(experiments: list[Experiment], packings: list[Packing], grid: Grid, 
     model = packings[0].model
     chosen, hindered = _choice(model, candidates)
     comparison = Comparison(grid, model.material(), model["protocol.discard"])
-    drawn = not has_grains(experiments[0])
+    drawn = not experiments[0].recording.has_start
     uncertain = nuisances(model, experiments[0].uncertainty, not drawn)
     return Plan(experiments, packings, comparison, chosen, hindered, uncertain, replicates, min(pairs, replicates), seed, recordings, drawn)
 
@@ -210,7 +210,7 @@ def _expect_alike(experiments: Sequence[Experiment], grid: Grid) -> None:
     """Raises InputError unless the packings of one experiment are compressed and measured in the same way."""
     first, problems = experiments[0], []
     for other in experiments:
-        if has_grains(other) != has_grains(first):
+        if other.recording.has_start != first.recording.has_start:
             problems.append(f"{other.name}: must have the positions of frame 0, or not, as {first.name}, to be diagnosed with it")
         if (other.measurement, other.uncertainty) != (first.measurement, first.uncertainty):
             problems.append(f"{other.name}: experiment.toml must state the same [measurement] and [uncertainty] as that of {first.name}, to be "
@@ -222,11 +222,6 @@ def _expect_alike(experiments: Sequence[Experiment], grid: Grid) -> None:
                             f"{1e3 * grid.stroke:.4g} mm, to be diagnosed with it")
     if problems:
         raise InputError(problems)
-
-
-def has_grains(experiment: Experiment) -> bool:
-    """Whether simulations can start from its own packing, as frame 0 of grains.csv has it."""
-    return len(experiment.recording.scans) > 0 and len(experiment.recording.scans.position[0]) > 0
 
 
 def _start_of(experiment: Experiment) -> engine.Packing:

@@ -71,7 +71,7 @@ def experiment_from(seen: Recording, measurement: Measurement, plate_only: bool 
     stated = {key: to_number(value_of(seen.parameters, key)) for key in MATERIALS}
     materials = {key: value for key, value in stated.items() if value is not None}
     scans = seen.scans
-    if plate_only or not (len(scans) and len(scans.position[0])):
+    if plate_only or not seen.has_start:
         scans = replace(scans, position=(NO_VECTORS,) * len(scans), contacts=(NO_CONTACTS,) * len(scans))
         seen = replace(seen, diameter=np.zeros(0), scans=scans)
     return Experiment(seen.label, seen, materials, measurement=Measurement() if plate_only else measurement)
@@ -117,7 +117,7 @@ def expect_measurable(truth: Recording, options: Options) -> None:
         _expect_all_scans(truth)
     if truth.species_names:
         raise InputError("the run must be one of grains of one material, got one of [[species]]: experiments state one material only")
-    if not len(truth.scans.position[0]):
+    if not truth.has_start:
         say("the run holds no positions of frame 0: grains.csv and contacts.csv are left out. Run with output.positions = true")
     elif truth.displacement[0] > 0:
         say(f"frame 0 is {1e3 * truth.displacement[0]:.3g} mm below the plate's start, not the packing at rest that a simulation should "

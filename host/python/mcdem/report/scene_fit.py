@@ -5,7 +5,7 @@ from itertools import combinations
 from ..calibration.fit import End
 from ..calibration.keys import FitKey
 from ..calibration.scene_fit import FitRound, SceneFit
-from .labels import number
+from .labels import NO_NUMBER, number
 from .text_table import table_of, to_text
 
 CORRELATED = 0.9  # from which a correlation is told
@@ -27,7 +27,7 @@ def value_text(key: FitKey, value: float, error: float = math.nan) -> str:
 
 def change_text(key: FitKey, value: float) -> str:
     relative = key.relative(value)
-    return f"{100 * relative:+.3g} %{' of the ' + key.scale_words if key.scale_words else ''}" if math.isfinite(relative) else "–"
+    return f"{100 * relative:+.3g} %{' of the ' + key.scale_words if key.scale_words else ''}" if math.isfinite(relative) else NO_NUMBER
 
 
 def round_text(fit: SceneFit) -> str:
@@ -50,7 +50,7 @@ def fit_text(fit: SceneFit) -> str:
     rows = [[WORDS.get(one.quantity, one.quantity) + (f" [{one.unit}]" if one.unit else ""), number(one.before), number(one.after),
              number(one.expected)] for one in fit.differences]
     if math.isfinite(fit.ratio[1]):
-        rows.append(["Rtop", number(fit.ratio[0], ".3f"), number(fit.ratio[1], ".3f"), "–"])
+        rows.append(["Rtop", number(fit.ratio[0], ".3f"), number(fit.ratio[1], ".3f"), NO_NUMBER])
     notes = ["root mean square of simulation less experiment; packings: what their scatter explains of it"]
     lines += [to_text(table_of(["<difference", "before", "after", "packings"], rows, notes)), *_sentences(fit)]
     return "\n".join([*lines, "in a scene: " + " ".join(f"--set {one}" for one in fit.assignments)])

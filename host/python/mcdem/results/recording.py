@@ -164,6 +164,11 @@ class Recording:
         """(S,) of the plate [m]."""
         return self.plate_start - self.scans.plate_z
 
+    @property
+    def has_start(self) -> bool:
+        """Whether frame 0 has the positions of the grains, from which simulations start."""
+        return len(self.scans) > 0 and len(self.scans.position[0]) > 0
+
     def value(self, key: str) -> Any:
         """The value of a scene key: number, truth, text, list; None if it is missing."""
         return typed_value(self.parameters[key]) if key in self.parameters else None
