@@ -72,16 +72,25 @@ INLINE lanes stiffened(global const Replica* restrict replica, lanes elastic, la
     return replica->stiffening > R(0) ? elastic * (R(1) + change) : elastic / (R(1) - change);
 }
 
+/* Hertz force times (delta / (0.1 R*))^m: the force grows with the power 3/2 + m of the overlap. It is
+   Hertz's at a tenth of R*, where soft grains are pressed. Without overlap it is zero. */
+INLINE lanes with_exponent(real exponent, lanes elastic, lanes overlap, lanes reduced_radius) {
+    const lanes relative = R(10) * overlap / reduced_radius;
+    return elastic * pow(fmax(relative, (lanes)(R(1e-6))), (lanes)(exponent));
+}
+
 /* Stored energy of a contact in excess of 2/5 F delta [J], without what relaxation and plasticity have
    dissipated. The integral of F over the overlap is exact for stiffening; for softening it is approximated by
-   a rational function within 3 %. */
+   a rational function, within 3 % with Hertz's exponent. */
 INLINE lanes effect_energy(global const Replica* restrict replica, lanes elastic, lanes relaxed_force,
                            lanes overlap, lanes reduced_radius) {
     const lanes change = fabs(replica->stiffening) * overlap / reduced_radius;
-    const real slower = replica->stiffening > R(0) ? R(1) : R(3) / R(7);
-    const lanes loading = elastic * overlap * (R(0.4) + change * R(2) / R(7)) / (R(1) + change * slower);
+    const real stored = R(1) / (R(2.5) + replica->law_exponent),
+               next = R(1) / (R(3.5) + replica->law_exponent);
+    const real slower = replica->stiffening > R(0) ? R(1) : R(2) * next / stored - R(1);
+    const lanes loading = elastic * overlap * (stored + change * next) / (R(1) + change * slower);
     const lanes lasting =
-        (R(1) - replica->plasticity) * (loading - R(0.4) * (elastic - relaxed_force) * overlap);
+        (R(1) - replica->plasticity) * (loading - stored * (elastic - relaxed_force) * overlap);
     return lasting - R(0.4) * elastic * overlap;
 }
 

@@ -9,7 +9,7 @@ typedef struct {
     lanes approach;       /* delta, corrected by both displacements; negative for a gap [m] */
     lanes overlap;        /* delta if touching, else zero [m] */
     lanes radius;         /* contact radius a = sqrt(R* delta) [m] */
-    lanes elastic;        /* Hertz force including stiffening; it displaces surfaces [N] */
+    lanes elastic;        /* Hertz force with stiffening and exponent; it displaces surfaces [N] */
     lanes displacement;   /* b of this grain's surface, by all its contacts [m] */
     lanes arm;            /* from the centre to the contact point, or to the probed surface point [m] */
     lanes3 force;         /* on this grain [N] */
@@ -81,6 +81,8 @@ INLINE Pressed press(Grain at, const int effects, Neighbours neighbour, Displace
         c->displacement += self.here * c->elastic;
         p.displacement_there += self.there * c->elastic;
     }
+    if (effects & EFFECT_LAW_EXPONENT)
+        c->elastic = with_exponent(replica->law_exponent, c->elastic, c->overlap, p.pair.radius);
     if (effects & EFFECT_STIFFENING) c->elastic = stiffened(replica, c->elastic, c->overlap, p.pair.radius);
     p.relaxed_force = c->elastic;
     if (effects & EFFECT_VISCOELASTICITY)

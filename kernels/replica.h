@@ -24,6 +24,7 @@ typedef struct {
     real viscoelasticity;     /* fraction a of the force that relaxes */
     real relaxing_share;      /* 1 - exp(-dt / T) */
     real stiffening;          /* c, relative change of the force per overlap over R*; negative: softening */
+    real law_exponent;        /* m, change of the exponent of the force against the overlap */
     real plasticity;          /* fraction of the largest overlap that is permanent */
     real bulge_contacts;     /* fraction of the surface displacements that counts without geometric overlap */
     real mindlin_share;      /* weight of the Mindlin law in the friction force */
@@ -77,3 +78,4 @@ typedef struct {
 #define EFFECT_FRICTION_HISTORY 64
 #define EFFECT_ROLLING_RESISTANCE 128
 #define EFFECT_PLATE_TILT 256
+#define EFFECT_LAW_EXPONENT 512

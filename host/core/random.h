@@ -15,7 +15,7 @@ enum class Stream : std::uint64_t {
     diameters = 1,
     positions = 2,
     jitter = 3,
-    // 4 to 6: noise of measurements (host/python/mcdem/experiment/keyed_normal.py)
+    // 4 to 6 and 10: noise of measurements (host/python/mcdem/experiment/keyed_normal.py)
     moduli = 7,
     true_diameters = 8,
     species = 9,

@@ -98,6 +98,7 @@ struct Effects {
     double relaxation_time = 0.1;   ///< relaxation time of that fraction [s]
     double stiffening =
         0;  ///< c: Hertz force times 1 + c overlap / R*; for c < 0 divided by 1 - c overlap / R*
+    double law_exponent = 0;  ///< m: Hertz force times (overlap / (0.1 R*))^m
     double finite_strain =
         0;  ///< weight of the difference between hyperelastic_sphere and elastic_sphere; elastic_sphere only
     double plasticity = 0;  ///< fraction of the largest overlap that remains after unloading
@@ -109,6 +110,8 @@ struct Effects {
     double modulus_scatter = 0;     ///< standard deviation of ln E between grains
     double diameter_error = 0;      ///< true minus stated diameter, the same for all grains [m]
     double polydispersity = 0;      ///< standard deviation of true minus stated diameter [m]
+    double width_error_x = 0;       ///< true minus stated width of the container along x [m]
+    double width_error_y = 0;       ///< the same along y
     double plate_tilt_x = 0;        ///< slope of the plate along x
     double plate_tilt_y = 0;        ///< the same along y
     double plate_compliance = 0;    ///< displacement of the plate per newton [m/N]

@@ -29,6 +29,8 @@ void set_effects(DeviceReplica& d, const Replica& replica) {
     d.plasticity = e.plasticity;
     on(e.stiffening != 0, EFFECT_STIFFENING);
     d.stiffening = e.stiffening;
+    on(e.law_exponent != 0, EFFECT_LAW_EXPONENT);
+    d.law_exponent = e.law_exponent;
     on(e.viscoelasticity > 0, EFFECT_VISCOELASTICITY);
     d.viscoelasticity = e.viscoelasticity;
     on(e.adhesion > 0 || e.cohesion > 0, EFFECT_ATTRACTION);
@@ -79,7 +81,8 @@ constexpr double max_along = 0.0002 / std::numeric_limits<Real>::epsilon();
 constexpr double rounding_margin = 1.001;
 
 std::array<double, 3> sizes(const Replica& replica) {
-    return {replica.box.size_x, replica.box.size_y, replica.plate.start};
+    const Box box = true_box(replica);
+    return {box.size_x, box.size_y, replica.plate.start};
 }
 
 /// `reach`: largest distance to the centre of a neighbour [m].
@@ -125,9 +128,8 @@ void set_space(DeviceReplica& d, const Replica& replica, const Packing& packing)
     d.probe_gap = replica.numerics.probe_gap * radius;
     d.overlap_limit = replica.numerics.overlap_limit;
     d.container = static_cast<int>(replica.box.shape);
-    d.wall_position[1] = replica.box.size_x;
-    d.wall_position[3] = replica.box.size_y;
-    d.wall_position[5] = replica.plate.start;
+    const auto size = sizes(replica);
+    for (int axis = 0; axis < 3; ++axis) d.wall_position[2 * axis + 1] = size[axis];
     std::fill_n(d.deformation, 3, 1);
     set_cells(d, replica, list_reach(replica, packing), packing.size());
     if (is_cell(replica.box)) set_deformed_cells(d, replica, list_reach(replica, packing), {});
@@ -138,6 +140,13 @@ double time_step_of(const Replica& replica, const GrainMaterial& material, doubl
 }
 
 }  // namespace
+
+Box true_box(const Replica& replica) {
+    Box box = replica.box;
+    box.size_x += replica.effects.width_error_x;
+    box.size_y += is_cylinder(box) ? replica.effects.width_error_x : replica.effects.width_error_y;
+    return box;
+}
 
 double mean_radius(const Packing& packing) {
     return 0.5 * std::accumulate(packing.diameter.begin(), packing.diameter.end(), 0.0) /

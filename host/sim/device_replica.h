@@ -25,6 +25,9 @@ int shortening(double time_step, double step_rate, int now);
 double shortened(double time_step, int shortening);
 inline constexpr int max_shortening = 40;
 
+/// The container with its width errors.
+Box true_box(const Replica& replica);
+
 double mean_radius(const Packing& packing);  ///< [m]
 
 /// Largest distance between centres in a neighbour list [m].

@@ -176,7 +176,7 @@ ReplicaState Engine::state(int replica, const Readings& read) const {
 
 /// Unit vector from the centre of a grain to its partner, a number as in the field Partner.
 Vec3 Engine::direction(int replica, const std::vector<Vec3>& position, int grain, int partner) const {
-    const Box box = deformed(replicas_[replica].box, run(replica).strain);
+    const Box box = deformed(true_box(replicas_[replica]), run(replica).strain);
     if (partner >= 0) {
         const int other = layout_.order[replica][partner - layout_.first_grain[replica]];
         return apart(box, position[grain], position[other]).normalized();

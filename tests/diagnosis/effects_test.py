@@ -23,14 +23,17 @@ MOVES = {
     "plate_compliance": ["effects.plate_compliance"], "force_bias": ["force_bias"], "gauge_drift": ["gauge_drift"],
     "zero_drift": ["zero_drift"], "gauge_hysteresis": ["gauge_hysteresis"], "force_lag": ["force_lag"],
     "guide_friction": ["guide_friction"], "force_saturation": ["force_saturation"], "force_threshold": ["threshold_shift"],
-    "position_bias": ["position_bias"], "plate_speed": ["plate.speed"], "inertia": ["grains.density"], "time_step": ["numerics.time_step"]}
+    "position_bias": ["position_bias"], "height_bias": ["height_bias"], "lost_contacts": ["lost_contacts"],
+    "law_exponent": ["effects.law_exponent"], "box_width": ["effects.width_error_x"], "box_depth": ["effects.width_error_y"],
+    "plate_speed": ["plate.speed"], "inertia": ["grains.density"], "time_step": ["numerics.time_step"]}
 FULL = {"effects.adhesion": 0.01, "effects.cohesion": 50.0, "effects.net_force_friction": 0.4, "effects.viscoelasticity": 0.2,
         "effects.stiffening": 0.5, "effects.finite_strain": 0.3, "effects.plasticity": 0.1, "effects.bulge_contacts": 0.6,
         "effects.friction_history": 0.3, "effects.rolling_resistance": 0.1, "effects.modulus_scatter": 0.2, "effects.diameter_error": 1e-4,
-        "effects.polydispersity": 2e-4, "effects.plate_tilt_x": 0.01, "effects.plate_tilt_y": -0.01, "effects.plate_compliance": 1e-4}
+        "effects.polydispersity": 2e-4, "effects.law_exponent": 0.1,
+        "effects.width_error_x": 1e-4, "effects.width_error_y": 1e-4, "effects.plate_tilt_x": 0.01, "effects.plate_tilt_y": -0.01, "effects.plate_compliance": 1e-4}
 PLAIN = Model(scene(), {}, Instrument(Measurement(force_threshold=4e-3)), 0.0215)
 # No effect is zero.
-WORN = Instrument(PLAIN.instrument.stated, 0.05, 1e-3, 1e-3, 0, 0.02, 0.01, 0.02, 1e-4, 0.01, 0.5)
+WORN = Instrument(PLAIN.instrument.stated, 0.05, 1e-3, 1e-3, 0, 0.02, 0.01, 0.02, 1e-4, 0.01, 0.5, 1e-3, 0.02)
 WHOLE = replace(Model(scene(contact__model="mc_dem"), FULL, WORN, 0.0215))
 
 
@@ -132,7 +135,8 @@ class Effects(unittest.TestCase):
                 (with_keys(protocol__rate_tolerance=0.01), hindered | {"plate_speed", "inertia"}),
                 (with_keys(protocol__rate_tolerance=0.02), hindered),
                 (with_keys(effects__adhesion=0.01), hindered | {"adhesion_net_friction"}),
-                (replace(PLAIN, base=PLAIN.base._with_box("periodic", 0.06, 0.06)), hindered | {"plate_tilt", "plate_tilt_y", "position_bias"})):
+                (replace(PLAIN, base=PLAIN.base._with_box("periodic", 0.06, 0.06)), hindered | {"plate_tilt", "plate_tilt_y", "position_bias", "box_width", "box_depth"}),
+                (replace(PLAIN, base=PLAIN.base._with_box("cylinder", 0.06, 0.06)), hindered | {"box_depth"})):
             self.assertEqual({effect.name for effect in EFFECTS if effect.hindrance(model)}, wanted)
 
 

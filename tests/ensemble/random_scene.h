@@ -188,6 +188,7 @@ private:
         maybe("net_force_friction", between(0, 1));
         maybe("viscoelasticity", between(0, 0.6));
         maybe("stiffening", between(-1, 1));
+        maybe("law_exponent", between(-0.3, 0.5));
         maybe("finite_strain", between(0, 1));
         maybe("plasticity", between(0, 0.4));
         maybe("bulge_contacts", between(0, 1));

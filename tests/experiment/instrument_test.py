@@ -77,6 +77,25 @@ class Noise(unittest.TestCase):
         self.assertLess(abs(np.mean(values)), 4.5 * sd / math.sqrt(values.size))
         self.assertLess(abs(np.std(values) - sd), 4.5 * sd / math.sqrt(2 * values.size))
 
+    def test_contacts_that_are_not_seen_are_the_stated_fraction(self):
+        """Of all forces alike, between grains alone, and others in every scan."""
+        seen = measured(TRUTH, Instrument(lost_contacts=0.2), 3)
+        grains = TRUTH.scans.contacts[1].partner >= 0  # the same in every scan
+        there = [np.isin(was.grain * 1000 + was.partner, one.grain * 1000 + one.partner)
+                 for was, one in zip(TRUTH.scans.contacts[1:], seen.scans.contacts[1:])]
+        self.assertTrue(all(one[~grains].all() for one in there))
+        there = [one[grains] for one in there]
+        self.expect(np.concatenate(there) - 0.8, 0.4)  # binomial
+        force = np.concatenate([np.linalg.norm(one.force[grains], axis=1) for one in TRUTH.scans.contacts[1:]])
+        self.assertLess(abs(np.corrcoef(force, np.concatenate(there))[0, 1]), 4.5 / math.sqrt(len(force)))
+        self.assertLess(abs(np.corrcoef(there[0], there[1])[0, 1]), 4.5 / math.sqrt(len(there[0])))
+
+    def test_heights_of_grains_are_read_too_large(self):
+        seen = measured(TRUTH, Instrument(height_bias=0.01), 3)
+        np.testing.assert_allclose(seen.scans.position[1], TRUTH.scans.position[1] * [1, 1, 1.01], rtol=1e-12)
+        np.testing.assert_allclose(seen.scans.contacts[1].point, TRUTH.scans.contacts[1].point * [1, 1, 1.01], rtol=1e-12)
+        np.testing.assert_array_equal(seen.scans.plate_z, TRUTH.scans.plate_z)
+
     def test_has_the_stated_size_and_is_uncorrelated(self):
         seen = measured(TRUTH, Instrument(Measurement(2e-4, 1e-4, 0.05, 0)), 3)
         shift = np.array(seen.scans.position) - TRUTH.scans.position

@@ -52,7 +52,7 @@ def test_readings():
     assert math.isclose(read("force_saturation", 2)[0]["contacts"][0][3][2], 0.4 / (1 + 2 * 0.5))
     dim = read("dim_walls", 0.3)[0]["contacts"]
     assert dim[0][3] == [0.3, 0.0, 0.4] and math.isclose(dim[1][3][2], 0.7)
-    assert [len(scan["contacts"]) for scan in read("missing_contacts", 1)] == [1] * 4, "those at walls stay"
+    assert [len(scan["contacts"]) for scan in read("lost_contacts", 1)] == [1] * 4, "those at walls stay"
     fewer = read("missing_grains", 1 / 3)[0]
     assert len(fewer["grains"]) == 2 and all(i < 2 for i, *_ in fewer["contacts"])
     first, later = scans()[0]["grains"], read("swapped_labels", 2 / 3)[1]
@@ -62,7 +62,7 @@ def test_readings():
     assert math.isclose(later["grains"][i][1] + later["grains"][j][1], 2 * point[0]), "contacts stay with their grains"
     assert math.isclose(read("diameter_error", 1e-3)[0]["grains"][1][0], 0.019)
     assert read("position_bias", 0.1)[0]["grains"][0][1:] == (0.0625 - 1.1 * 0.0325, 0.0625, 0.01 * 1.1)
-    assert read("vertical_stretch", 0.1)[0]["grains"][0][1:] == (0.03, 0.0625, 0.01 * 1.1)
+    assert read("height_bias", 0.1)[0]["grains"][0][1:] == (0.03, 0.0625, 0.01 * 1.1)
     edge = 0.0625 - (1 + 0.1 * (0.0325 / 0.0625)**2) * 0.0325
     assert math.isclose(read("barrel", 0.1)[0]["grains"][0][1], edge)
     mixed = [{"contacts": [(0, 1, None, [1, 0, 0]), (0, 2, None, [3, 0, 0])]}]

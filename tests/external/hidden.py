@@ -85,7 +85,7 @@ def position_bias(scans, amplitude, chance):
     change_points(scans, lambda point: [m + (1 + amplitude) * (p - m) for p, m in zip(point, MIDDLE)])
 
 
-def vertical_stretch(scans, amplitude, chance):
+def height_bias(scans, amplitude, chance):
     change_points(scans, lambda point: [point[0], point[1], (1 + amplitude) * point[2]])
 
 
@@ -119,7 +119,7 @@ def dim_walls(scans, amplitude, chance):
     change_forces(scans, lambda i, j, size: 1 - amplitude if isinstance(j, str) else 1)
 
 
-def missing_contacts(scans, amplitude, chance):
+def lost_contacts(scans, amplitude, chance):
     """Each contact of two grains is missed with this probability, whatever its force."""
     for scan in scans:
         scan["contacts"] = [c for c in scan["contacts"] if isinstance(c[1], str) or chance.random() >= amplitude]
@@ -279,17 +279,17 @@ LIBRARY = {
     "force_lag": Hidden(3e-4, 1.2e-3, "way of the plate by which the gauge is late [m]", reading=force_lag),
     "guide_friction": Hidden(0.01, 0.04, "friction of the plate's guide, over the highest force", reading=guide_friction),
     "position_bias": Hidden(0.0015, 0.0045, "lengths read too large", signed=True, reading=position_bias),
+    "height_bias": Hidden(0.003, 0.015, "heights of grains read too large", signed=True, reading=height_bias),
+    "lost_contacts": Hidden(0.05, 0.25, "part of the contacts overlooked", reading=lost_contacts),
 }
 
 OUTSIDE = {
     "leaning_box": Hidden(0.03, 0.15, "tangent of the angle by which the cell stands crooked", reality=lambda a: {"lean": a}),
     "soft_walls": Hidden(0.5, 3, "modulus of the walls over that of the grains", arguments=soft_walls),
     "rough_floor": Hidden(0.15, 0.6, "friction at the floor", arguments=lambda code, a, chance: {"floor_friction": a}),
-    "vertical_stretch": Hidden(0.005, 0.015, "heights of grains read too large", signed=True, reading=vertical_stretch),
     "scale_drift": Hidden(0.004, 0.012, "lengths read too large, after the first cycle", signed=True, reading=scale_drift),
     "barrel": Hidden(0.005, 0.02, "lateral distortion at the sides", signed=True, reading=barrel),
     "missing_grains": Hidden(0.03, 0.1, "part of the grains not found", reading=missing_grains),
-    "missing_contacts": Hidden(0.08, 0.25, "part of the contacts overlooked", reading=missing_contacts),
     "dim_walls": Hidden(0.08, 0.3, "part of the forces at walls that is not seen", reading=dim_walls),
     "swapped_labels": Hidden(0.03, 0.15, "part of the grains whose label a neighbour has, from the second scan on", reading=swapped_labels),
     "mixed_forces": Hidden(0.1, 0.4, "part of the mean force of a grain in each of its forces", reading=mixed_forces),

@@ -16,6 +16,7 @@ const std::pair<double Effects::*, double> amplitudes[] = {
     {&Effects::rolling_resistance, 0.2}, {&Effects::modulus_scatter, 0.2},
     {&Effects::plate_tilt_x, 0.02},      {&Effects::plate_tilt_y, -0.01},
     {&Effects::cohesion, 2e3},           {&Effects::net_force_friction, 0.6},
+    {&Effects::law_exponent, 0.2},
 };
 constexpr double relaxation_time = 2e-3;  ///< a few steps
 
@@ -35,6 +36,7 @@ std::vector<Effects> one_by_one() {
         if (effect == &Effects::net_force_friction) each.back().adhesion = 0.02;  // what it subtracts
     }
     each.emplace_back().stiffening = -0.8;
+    each.emplace_back().law_exponent = -0.3;
     each.emplace_back();
     return each;
 }

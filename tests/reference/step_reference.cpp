@@ -191,15 +191,17 @@ void StepReference::add_forces(ReferenceContact& contact, const Body& a, const B
     const auto& effects = scene_.effects;
     const Vec3& e = contact.direction;
     const double distance = (b.position - a.position).norm();
-    const double x = effects.stiffening * contact.overlap / pair.radius;
+    const double x = effects.stiffening * contact.overlap / pair.radius, power = 1.5 + effects.law_exponent;
+    contact.elastic *= std::pow(10 * contact.overlap / pair.radius, effects.law_exponent);
     contact.elastic *= x > 0 ? 1 + x : 1 / (1 - x);
-    contact.energy =
-        contact.elastic * contact.overlap *
-        (x > 0 ? (2.0 / 5 + 2.0 / 7 * x) / (1 + x) : (2.0 / 5 - 2.0 / 7 * x) / (1 - 3.0 / 7 * x));
+    const double potential = 1 / (power + 1), next = 1 / (power + 2);
+    contact.energy = contact.elastic * contact.overlap *
+                     (x > 0 ? (potential + next * x) / (1 + x)
+                            : (potential - next * x) / (1 - (2 * next / potential - 1) * x));
     const double relaxed_force = std::max(0.0, contact.elastic - effects.viscoelasticity * memory.relaxed);
     const double left = std::exp(-elapsed / effects.relaxation_time);
     memory.relaxed = contact.elastic * (1 - left) + memory.relaxed * left;
-    contact.energy -= 2.0 / 5 * (contact.elastic - relaxed_force) * contact.overlap;
+    contact.energy -= potential * (contact.elastic - relaxed_force) * contact.overlap;
     contact.energy *= 1 - effects.plasticity;
 
     const Vec3 r_a = contact.arm * e, r_b = (contact.arm - distance) * e;

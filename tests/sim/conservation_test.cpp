@@ -61,6 +61,7 @@ Start free_cluster_with_effects() {
     effects.viscoelasticity = 0.3;
     effects.relaxation_time = 0.01;
     effects.stiffening = 0.5;
+    effects.law_exponent = 0.2;
     effects.plasticity = effects.friction_history = effects.modulus_scatter = 0.2;
     effects.bulge_contacts = 0.5;
     effects.rolling_resistance = 0.1;
@@ -82,6 +83,7 @@ Start random_free_cluster(unsigned seed, ContactModel model) {
     effects.viscoelasticity = some(0.8);
     effects.relaxation_time = 0.01;
     effects.stiffening = some(2) - some(1);
+    effects.law_exponent = some(0.5) - some(0.3);
     effects.finite_strain = some(1);
     effects.plasticity = some(0.5);
     effects.friction_history = some(1);

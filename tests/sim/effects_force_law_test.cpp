@@ -44,6 +44,21 @@ TEST(Stiffening, NegativeValuesDivide) {
             amount, [](double x) { return 1 / (1 - x); }, 0.03);
 }
 
+// The energy of a power of the overlap is exact.
+TEST(LawExponent, IsAddedToHertzs) {
+    for (double exponent : {-0.5, 0.15, 1.0}) {
+        mcdem::Effects effects;
+        effects.law_exponent = exponent;
+        SqueezedGrain grain(effects, 0);
+        const auto path = grain.path(deepest, 200);
+        for (const auto& [overlap, force, energy, work] : path) {
+            const double factor = std::pow(overlap / (0.1 * SqueezedGrain::radius), exponent);
+            EXPECT_NEAR(force / (SqueezedGrain::hertz(overlap) * factor), 1, 10 * SqueezedGrain::rounding());
+        }
+        EXPECT_NEAR(path.back().energy / path.back().work, 1, 1e-4) << exponent;
+    }
+}
+
 /// Loading and unloading in steps of a hundredth of `deepest`.
 std::vector<SqueezedGrain::Point> go(SqueezedGrain& grain, double target) {
     const double change = target - grain.overlap();

@@ -1,4 +1,7 @@
-// Tilted plate, compliant plate.
+// Tilted plate, compliant plate, container of another width.
+#include <algorithm>
+#include <numbers>
+
 #include "sim/compliant_plate.h"
 #include "sim/simulated.h"
 #include "sim/squeezed_grain.h"
@@ -90,6 +93,54 @@ std::vector<mcdem::Scan> scans(const Replica& replica, int count = 1) {
     scene.replicas[0].box = {2.2 * radius, 2.2 * radius};
     const Packing packing{{{1.1 * radius, 1.1 * radius, replica.plate.start / 2}}, {2 * radius}};
     return simulated(scene, packing).scans[0];
+}
+
+/// One grain and six around it, three of them in a row along x.
+Packing seven_grains(const Vec3& middle) {
+    Packing packing{{middle}, {2 * radius}};
+    for (int k = 0; k < 6; ++k) {
+        const double angle = k * std::numbers::pi / 3;
+        packing.position.push_back(middle + 2 * radius * Vec3(std::cos(angle), std::sin(angle), 0));
+        packing.diameter.push_back(2 * radius);
+    }
+    return packing;
+}
+
+// The same grains in a container that is stated as wide as the other one is: the same bits.
+TEST(WidthError, IsThatOfAContainerOfTheTrueWidth) {
+    constexpr double x = 4e-4, y = -3e-4;
+    for (ContainerShape shape : {ContainerShape::box, ContainerShape::cylinder}) {
+        Replica wrong = single_grain(), right = wrong;
+        for (Replica* one : {&wrong, &right}) {
+            one->plate = {2.2 * radius, 1.9 * radius, 0.1};
+            one->protocol.scans_per_stroke = 2;
+            one->protocol.rate_tolerance = 0;  // the speed would follow the stated area
+            one->box = {5.9 * radius, 5.9 * radius};
+            one->box.shape = shape;
+        }
+        wrong.effects.width_error_x = x;
+        wrong.effects.width_error_y = y;
+        right.box.size_x += x;
+        right.box.size_y += shape == ContainerShape::cylinder ? x : y;
+        const Packing wedged = seven_grains({2.95 * radius, 2.95 * radius, radius});
+        Scene scene;
+        scene.precision = finest();
+        scene.replicas = {wrong, right};
+        const auto all = simulated(scene, {wedged, wedged}).scans;
+        ASSERT_EQ(all[0].size(), 4u);
+        for (std::size_t k = 0; k < all[0].size(); ++k) {
+            ASSERT_EQ(all[0][k].contacts.size(), all[1][k].contacts.size());
+            for (std::size_t c = 0; c < all[0][k].contacts.size(); ++c) {
+                EXPECT_EQ(all[0][k].contacts[c].force, all[1][k].contacts[c].force);
+                EXPECT_EQ(all[0][k].contacts[c].point, all[1][k].contacts[c].point);
+            }
+        }
+        const auto& compressed = all[0][1].contacts;
+        EXPECT_TRUE(std::ranges::any_of(compressed, [](const auto& contact) {
+            return contact.partner != mcdem::wall_partner(mcdem::Wall::plate) &&
+                   contact.partner != mcdem::wall_partner(mcdem::Wall::floor);
+        })) << "the side wall carries";
+    }
 }
 
 // At rest, force and position solve z = commanded z + C F, F = F_H(R - z/2); C dF/dz is up to 12. A scan

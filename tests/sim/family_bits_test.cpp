@@ -78,7 +78,7 @@ mcdem::Effects effects_of(int kind) {
             effects.viscoelasticity = 0.4, effects.relaxation_time = 0.01;
             break;
         case 2:
-            effects.plasticity = 0.3, effects.stiffening = 0.5;
+            effects.plasticity = 0.3, effects.stiffening = 0.5, effects.law_exponent = 0.2;
             break;
         case 3:
             effects.adhesion = 0.03, effects.rolling_resistance = 0.1, effects.friction_history = 0.5;
@@ -87,6 +87,7 @@ mcdem::Effects effects_of(int kind) {
             effects.modulus_scatter = 0.3, effects.bulge_contacts = 0.3, effects.polydispersity = 1e-4;
             break;
         case 5:
+            effects.width_error_x = 1e-3, effects.width_error_y = -5e-4, effects.law_exponent = -0.2;
             effects.plate_compliance = 0.02, effects.plate_tilt_x = 0.02, effects.viscoelasticity = 0.2;
             break;
         case 6:

@@ -21,6 +21,10 @@ using Found = std::optional<std::string>;
 
 Found unless(bool good, std::string problem) { return good ? Found{} : Found{std::move(problem)}; }
 
+Found positive_width(double stated, double error) {
+    return unless(stated + error > 0, fmt::format("must leave a width, got {} of {} m", error, stated));
+}
+
 struct Check {
     std::vector<std::string_view> keys;  ///< the first one is reported
     enum class Packing { any, generated } applies;
@@ -121,6 +125,17 @@ const std::vector<Check> checks{
         const auto& effects = s.replica.effects;
         return unless(s.replica.box.shape != ContainerShape::periodic || (effects.plate_tilt_x == 0 && effects.plate_tilt_y == 0),
                       "must not be periodic where effects.plate_tilt_x or effects.plate_tilt_y is given: a tilted plate does not repeat");
+    }},
+    {{"container.shape", "effects.width_error_x", "effects.width_error_y"}, Check::Packing::any, [](const Settings& s) {
+        const auto& effects = s.replica.effects;
+        return unless(!is_periodic(s.replica.box) || (effects.width_error_x == 0 && effects.width_error_y == 0),
+                      "must not be periodic where effects.width_error_x or effects.width_error_y is given: it has no side walls");
+    }},
+    {{"effects.width_error_x", "box.size_x"}, Check::Packing::any, [](const Settings& s) {
+        return positive_width(s.replica.box.size_x, s.replica.effects.width_error_x);
+    }},
+    {{"effects.width_error_y", "box.size_y"}, Check::Packing::any, [](const Settings& s) {
+        return positive_width(s.replica.box.size_y, s.replica.effects.width_error_y);
     }},
     {{"container.height", "container.shape", "packing.file"}, Check::Packing::any, [](const Settings& s) {
         return unless(!is_cell(s.replica.box) || s.packing_file.empty() || !std::isnan(s.cell_height),

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..diagnosis.model import Model
+from ..experiment.container import lengths
 from ..results.names import Phase
-from ..results.recording import Contacts, Recording
+from ..results.recording import Contacts, Floats, Recording
 
 
 @dataclass(frozen=True)
@@ -24,17 +25,34 @@ def _soft_walls(model: Model, amplitude: float) -> Model:
     return model.with_keys({"walls.youngs_modulus": amplitude * model["grains.youngs_modulus"]})
 
 
-def _narrower_box(model: Model, amplitude: float) -> Model:
-    """Part by which the box is narrower along x than stated."""
-    size_x, size_y = (1 - amplitude) * model["box.size_x"], model["box.size_y"]
-    return replace(model, base=model.scene._with_box(model["container.shape"], size_x, size_y), changes={})
+def _barrel(recording: Recording, amplitude: float) -> Recording:
+    """Part by which lateral distances from the axis are read too large at the middle of a side; inside it falls with their square."""
+    box, scans = recording.box, recording.scans
+    axis = 0.5 * np.array([box.size_x, box.size_y])
+
+    def read(point: Floats) -> Floats:
+        out = point[:, :2] - axis
+        part = amplitude * (out**2).sum(axis=1, keepdims=True) / axis[0] ** 2
+        return np.column_stack([axis + (1 + part) * out, point[:, 2]])
+
+    contacts = tuple(replace(one, point=read(one.point)) for one in scans.contacts)
+    return replace(recording, scans=replace(scans, position=tuple(map(read, scans.position)), contacts=contacts))
 
 
-def _stretched(recording: Recording, amplitude: float) -> Recording:
-    """Part by which the heights of grains, not of the plate, are read too large."""
-    factor, scans = np.array([1, 1, 1 + amplitude]), recording.scans
-    contacts = tuple(Contacts(one.grain, one.partner, factor * one.point, one.force, one.overlap) for one in scans.contacts)
-    return replace(recording, scans=replace(scans, position=tuple(factor * one for one in scans.position), contacts=contacts))
+def _mixed_forces(recording: Recording, amplitude: float) -> Recording:
+    """Part of each contact's force that is read as the mean over the contacts of its grains."""
+    count = len(recording.diameter)
+
+    def read(one: Contacts) -> Contacts:
+        size, grains = lengths(one.force), one.partner >= 0
+        owner = np.concatenate([one.grain, one.partner[grains]])
+        number = np.bincount(owner, minlength=count)
+        mean = np.bincount(owner, np.concatenate([size, size[grains]]), count) / np.maximum(number, 1)
+        around = np.where(grains, 0.5 * (mean[one.grain] + mean[one.partner]), mean[one.grain])
+        factor = 1 + amplitude * (around / np.where(size > 0, size, np.inf) - 1)
+        return replace(one, force=factor[:, np.newaxis] * one.force)
+
+    return replace(recording, scans=replace(recording.scans, contacts=tuple(map(read, recording.scans.contacts))))
 
 
 def _with_backlash(recording: Recording, amplitude: float) -> Recording:
@@ -45,8 +63,8 @@ def _with_backlash(recording: Recording, amplitude: float) -> Recording:
 
 OUTSIDE_EFFECTS = (
     OutsideEffect("soft_walls", 0.5, 3, False, change_model=_soft_walls),
-    OutsideEffect("vertical_stretch", 0.005, 0.015, True, change_reading=_stretched),
-    OutsideEffect("box_error", 0.007, 0.02, False, change_model=_narrower_box),
+    OutsideEffect("barrel", 0.005, 0.02, True, change_reading=_barrel),
+    OutsideEffect("mixed_forces", 0.1, 0.4, False, change_reading=_mixed_forces),
     OutsideEffect("plate_backlash", 0.5e-3, 1.5e-3, True, change_reading=_with_backlash),
 )
 

@@ -94,7 +94,7 @@ def _run_alone(options: argparse.Namespace, scene: "Scene") -> int:
         for name, kind in (("diagnosis.json", DIAGNOSIS), ("diagnosis.html", PAGE)):
             expect_replaceable(folder / name, kind)
         if not options.no_figures:
-            expect_replaceable_figures(folder, ("where", "which", "how_far"))
+            expect_replaceable_figures(folder, ("where", "which", "how_far", "law"))
         diagnosis = _diagnose(options, scene, experiments)
         replace_own(folder / "diagnosis.json", DIAGNOSIS, diagnosis_json(diagnosis).encode())
         present(options.out, figures=not options.no_figures)

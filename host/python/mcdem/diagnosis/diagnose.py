@@ -12,8 +12,9 @@ from ..look import Path
 from ..number_text import shortest
 from ..results.recording import Floats
 from .change_of_the_scene import Amplitudes, change_of_the_scene, simulate_motion
+from .contact_law import contact_laws
 from .decision import Findings, Limits
-from .diagnosis_types import Diagnosis, GapReduction, NextStep, Refinement, Verdict
+from .diagnosis_types import ContactLaw, Diagnosis, GapReduction, NextStep, Refinement, Verdict
 from .effects import depends_on_speed
 from .evidence import (CandidateRange, Evidence, NuisancePrior, PackingEvidence, column_means, leave_out_failures, mean_over_packings,
                        take_means)
@@ -263,7 +264,7 @@ class _Diagnosing:
 
     def _diagnosis(self, inference: Inference) -> Diagnosis:
         diagnosis = replace(inference.builder.diagnosis(), not_testable=tuple(self.hindered),
-                            refinements=tuple(self.refinements))
+                            refinements=tuple(self.refinements), contact_laws=self._contact_laws(inference))
         steps = list(diagnosis.next)
         if diagnosis.verdict == Verdict.group:
             steps = self._with_other_protocols(inference, steps)
@@ -274,6 +275,10 @@ class _Diagnosing:
         if diagnosis.shrink and self.has_metrics and self.options.confirmations > 0:
             diagnosis = replace(diagnosis, shrink=self._with_metrics(diagnosis.shrink, inference))
         return diagnosis
+
+    def _contact_laws(self, inference: Inference) -> tuple[ContactLaw, ...]:
+        plan = self.simulations.plan
+        return contact_laws(inference.evidence, inference.builder.data, plan.comparison.material, plan.model.mean_diameter)
 
     def _with_other_protocols(self, inference: Inference, steps: list[NextStep]) -> list[NextStep]:
         """Adds the power of other protocols to tell the leading effect from its rival, predicted by runs of both. The most powerful step

@@ -180,6 +180,18 @@ class PackingAgreement:
     differs: bool  # the difference exceeds noise, corrected for the number of packings
 
 
+@dataclass(frozen=True)
+class ContactLaw:
+    """The law of contacts between grains that forces and positions show, at one displacement."""
+    phase: str
+    displacement_mm: float
+    overlap: tuple[float, ...]  # over R*, corrected for the surface displacement by other contacts
+    change: tuple[float, ...]  # of the force at that overlap, over that in the scene, minus one
+    change_error: tuple[float, ...]  # one sigma
+    exponent: float  # of the force against the overlap, if the scene's contacts have Hertz's 3/2
+    exponent_error: float  # one sigma
+
+
 @dataclass(frozen=True, kw_only=True)
 class Diagnosis:
     verdict: str  # of Verdict
@@ -201,4 +213,5 @@ class Diagnosis:
     refinements: tuple[Refinement, ...] = ()
     next: tuple[NextStep, ...] = ()  # most useful first
     packings: tuple[PackingAgreement, ...] = ()  # empty for a single packing
+    contact_laws: tuple[ContactLaw, ...] = ()  # empty without contact forces and positions
     provenance: dict[str, str]  # scene, experiment, program, device, seed

@@ -154,6 +154,14 @@ def _no_sides(m: Model) -> str:
             if m["container.shape"] == "periodic" else "")
 
 
+def _no_walls(m: Model) -> str:
+    return "" if m["container.shape"] in ("box", "cylinder") else "a periodic container has no side walls"
+
+
+def _no_depth(m: Model) -> str:
+    return "a cylinder is as wide along y as along x" if m["container.shape"] == "cylinder" else _no_walls(m)
+
+
 def _no_threshold(m: Model) -> str:
     return "" if m.instrument.stated.force_threshold > 0 else "the experiment states no force threshold"
 
@@ -182,6 +190,8 @@ EFFECTS = (
            0, 0.8, 0.1, 0.3, _share("effects.viscoelasticity"), depends_on_speed=True),
     Effect("stiffening", "stiffening at large strain", "", "c in F = F_Hertz (1 + c overlap/R*)", "first correction to Hertz at large strain",
            -1.5, 4, -0.7, 1.2, _plus("effects.stiffening")),
+    Effect("law_exponent", "exponent of the contact law", "", "m: contact forces grow with the power 3/2 + m of the overlap; at 0.1 R* they are Hertz's",
+           "power law (Hertz 1882: m = 0)", -0.4, 0.8, -0.1, 0.2, _plus("effects.law_exponent")),
     Effect("finite_strain", "finite strain of the grains", "", "fraction of the finite-strain correction of an elastic sphere",
            "finite elements of a neo-Hookean sphere", 0, 1, 0.5, 1.0, _share("effects.finite_strain"), hindrance=_not_elastic_sphere),
     Effect("plasticity", "", "", "fraction of the largest overlap that remains after unloading", "Walton & Braun 1986",
@@ -196,6 +206,10 @@ EFFECTS = (
            0, 0.8, 0.15, 0.4, _plus("effects.modulus_scatter")),
     Effect("rolling_resistance", "", "", "mu_r: a spring resists rolling and yields at the torque mu_r R* F_n",
            "Iwashita & Oda 1998; Ai et al. 2011, model C", 0, 1.5, 0.5, 1.5, _plus("effects.rolling_resistance"), _friction_scale),
+    Effect("box_width", "width of the container along x", "m", "true minus stated width along x", "geometry", -0.15, 0.3, -0.02, 0.04,
+           _plus("effects.width_error_x"), _diameter, _no_walls),
+    Effect("box_depth", "width of the container along y", "m", "true minus stated width along y", "geometry", -0.15, 0.3, -0.02, 0.04,
+           _plus("effects.width_error_y"), _diameter, _no_depth),
     Effect("plate_tilt", "tilt of the plate along x", "", "slope of the plate along x", "geometry", -0.08, 0.08, -0.015, 0.015,
            _plus("effects.plate_tilt_x"), hindrance=_no_sides),
     Effect("plate_tilt_y", "tilt of the plate along y", "", "slope of the plate along y", "geometry", -0.08, 0.08, -0.015, 0.015,
@@ -224,6 +238,10 @@ EFFECTS = (
            -1, 8, -0.5, 1.5, _read("threshold_shift"), lambda m: m.instrument.stated.force_threshold, _no_threshold),
     Effect("position_bias", "bias of positions", "relative", "relative error by which lengths are measured too large", "measurement",
            -0.02, 0.02, -0.003, 0.003, _read("position_bias"), hindrance=_no_sides),
+    Effect("height_bias", "bias of heights", "relative", "relative error by which heights of grains, not of the plate, are measured too large",
+           "measurement", -0.02, 0.02, -0.003, 0.003, _read("height_bias")),
+    Effect("lost_contacts", "contacts that are not seen", "", "fraction of the contacts between grains that the analysis misses, whatever their force", "measurement",
+           0, 0.5, 0.03, 0.1, _read("lost_contacts")),
     Effect("plate_speed", "speed of the plate", "", "fraction by which the real plate is slower than the scene's", "numerics",
            0, 1, 0.5, 0.75, _lower(_plate_speed), hindrance=_no_slower_plate, settings=_plate_speed, depends_on_speed=True),
     Effect("inertia", "inertia of the grains", "", "fraction by which real inertia is smaller than the scene's, with the same weight",

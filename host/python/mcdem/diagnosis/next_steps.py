@@ -13,6 +13,7 @@ from .effects import depends_on_speed
 from .evidence import Evidence, GapData, parameters_of
 from .gap_space import BinChoice, FreeParameter, GapSpace, usable_bins
 from .library import apart_from_mean
+from .mimics import mimics_of
 from .not_measured import not_measured
 
 TIMES_BETTER = 5  # factor by which a parameter is measured better
@@ -211,6 +212,10 @@ def next_measurements(evidence: Evidence, data: GapData, findings: Findings, dec
     if decision.verdict != Verdict.no_gap and not has_rivals and any(depends_on_speed(data.name(c)) for c in decision.group):
         steps.append(NextStep("repeat the experiment at another plate speed: a difference that changes with speed is not caused by "
                               "geometry or elasticity", None))
+    if decision.verdict in (Verdict.effect, Verdict.group):
+        named = chosen_proposal(findings, decision).candidates
+        steps += [NextStep(f"exclude {mimic.what}: {mimic.told_by}", None)
+                  for mimic in dict.fromkeys(mimic for c in named for mimic in mimics_of(data.name(c)))]
     if decision.verdict == Verdict.unknown_effect:
         steps.insert(0, NextStep("see Where for the observables that differ, and check the data (`mcdem experiment check`), the stated "
                                  "parameters and units, and the numerics (`mcdem converge`)", None))

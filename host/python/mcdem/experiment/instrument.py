@@ -4,13 +4,14 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from scipy.special import ndtri
 
 from ..results.names import Phase, Wall
 from ..results.recording import NO_VECTORS, Contacts, Floats, Ints, Recording, Scans
 from .contact_averages import with_contact_averages
 from .container import lengths
 from .experiment import Measurement
-from .keyed_normal import MEASURED_DIAMETERS, MEASURED_FORCES, MEASURED_POSITIONS, keyed_normals
+from .keyed_normal import MEASURED_DIAMETERS, MEASURED_FORCES, MEASURED_POSITIONS, SEEN_CONTACTS, keyed_normals
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,8 @@ class Instrument:
     # As soon as the plate moves, the top force is read larger on the way down and smaller on the way up, by guide_friction F_max.
     guide_friction: float = 0.0
     force_saturation: float = 0.0  # a contact force f is read as f/(1 + force_saturation f) [1/N]
+    height_bias: float = 0.0  # heights of grains and contacts over the floor are read (1 + height_bias) times too large
+    lost_contacts: float = 0.0  # fraction of the contacts between grains that are not seen, whatever their force
 
 
 def measured(truth: Recording, instrument: Instrument, seed: int) -> Recording:
@@ -73,7 +76,7 @@ def _shifts(instrument: Instrument, seed: int, frames: Ints, grains: int) -> Flo
 
 
 def _stretched(instrument: Instrument, centre: Floats, point: Floats) -> Floats:
-    return centre + (1 + instrument.position_bias) * (point - centre)
+    return centre + (1 + instrument.position_bias) * np.array([1, 1, 1 + instrument.height_bias]) * (point - centre)
 
 
 def _seen(contacts: tuple[Contacts, ...], instrument: Instrument, seed: int, centre: Floats, shift: Floats) -> list[Contacts]:
@@ -83,12 +86,14 @@ def _seen(contacts: tuple[Contacts, ...], instrument: Instrument, seed: int, cen
         return list(contacts)
     grain, partner, point, force = (np.concatenate([getattr(one, name) for one in contacts]) for name in ("grain", "partner", "point", "force"))
     gain = np.full(len(frame), 1 + instrument.force_bias)
+    pair = grain.astype(np.uint64) << np.uint64(32) | partner.astype(np.int32).view(np.uint32).astype(np.uint64)
     if instrument.stated.force_error > 0:
-        pair = grain.astype(np.uint64) << np.uint64(32) | partner.astype(np.int32).view(np.uint32).astype(np.uint64)
         gain *= 1 + instrument.stated.force_error * keyed_normals(seed, MEASURED_FORCES, frame, pair)
     gain = np.maximum(gain, 0)  # errors do not reverse a force
     force = force * (gain / (1 + instrument.force_saturation * lengths(force)))[:, np.newaxis]
     there = lengths(force) >= instrument.stated.force_threshold + instrument.threshold_shift
+    if instrument.lost_contacts > 0:
+        there &= (partner < 0) | (keyed_normals(seed, SEEN_CONTACTS, frame, pair) >= ndtri(instrument.lost_contacts))
     frame, grain, partner, force = frame[there], grain[there], partner[there], force[there]
     error = shift[frame, grain]
     grains = partner >= 0

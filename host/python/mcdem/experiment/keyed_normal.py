@@ -10,7 +10,7 @@ from ..results.recording import Floats
 Words = NDArray[np.uint64]
 
 # Streams of random numbers (host/core/random.h); those with the same seed are independent.
-MEASURED_DIAMETERS, MEASURED_POSITIONS, MEASURED_FORCES = 4, 5, 6
+MEASURED_DIAMETERS, MEASURED_POSITIONS, MEASURED_FORCES, SEEN_CONTACTS = 4, 5, 6, 10
 
 
 def scattered(x: Words) -> Words:

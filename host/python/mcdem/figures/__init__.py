@@ -14,7 +14,7 @@ from typing import Any
 from ..report.figure_values import DEFINITIONS
 from .challenge import confidence, confusion, power
 from .convergence import convergence
-from .diagnosis import how_far, where, which
+from .diagnosis import how_far, law, where, which
 from .runs import figure_function
 from .style import COLUMN, PAGE, STYLE, new_axes, save
 from .values import read
@@ -22,7 +22,7 @@ from .what_if import what_if
 
 globals().update({name: figure_function(name) for name in DEFINITIONS})
 
-__all__ = ["COLUMN", "PAGE", "STYLE", "confidence", "confusion", "convergence", "how_far", "new_axes", "power", "read", "save",
+__all__ = ["COLUMN", "PAGE", "STYLE", "confidence", "confusion", "convergence", "how_far", "law", "new_axes", "power", "read", "save",
            "what_if", "where", "which", *DEFINITIONS]
 
 

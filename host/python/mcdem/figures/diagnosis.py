@@ -1,4 +1,4 @@
-"""Figures of a diagnosis: location of the gap, consistent effects, gap reduction."""
+"""Figures of a diagnosis: location of the gap, consistent effects, gap reduction, the law of contacts."""
 from typing import Any
 
 import matplotlib.cm
@@ -6,7 +6,7 @@ import matplotlib.colors
 import matplotlib.patches
 import numpy as np
 
-from .style import COLUMN, INK, PAGE, Entry, is_below, key, line, new_axes, plain, styled
+from .style import COLUMN, INK, PAGE, Entry, is_below, key, keyed_axes, line, new_axes, plain, styled
 from .values import Source, read
 
 # Blue: the experiment is lower than the simulation; orange: higher.
@@ -186,3 +186,19 @@ def draw_bars(axes: Any, values: Values) -> None:
     axes.margins(x=0.17)
     set_rows(axes)
     axes.set_xlabel(values["gap_label"])
+
+
+@styled
+def law(source: Source, axes: Any = None) -> Any:
+    """Force of contacts between grains at equal overlap, measured over simulated, with its 90 % band, at some displacements."""
+    values = read(source, "law")
+    entries = [(line(color=curve["colour"]), curve["words"]) for curve in values["curves"]]
+    axes = axes or keyed_axes(entries, None)
+    for curve in values["curves"]:
+        x, y, half = (np.array(curve[name]) for name in ("x", "y", "half_band"))
+        axes.fill_between(x, y - half, y + half, color=curve["colour"], alpha=0.18, linewidth=0)
+        axes.plot(x, y, color=curve["colour"], marker="o", markersize=2)
+    axes.axhline(0, color=INK, linewidth=0.6)
+    axes.set(xlabel=values["x_label"], ylabel=values["y_label"])
+    key(axes, entries)
+    return axes

@@ -21,7 +21,7 @@ GAP_COLOURS = [[0, "var(--cool-3)"], [0.2, "var(--cool-2)"], [0.375, "var(--cool
 def diagnosis_charts(diagnosis: Diagnosis) -> list[Chart]:
     """Those that there are. where: a heat map before and after recalibration, bins that stand out framed. which: candidates by score,
     with their amplitudes over what these data can detect. how_far: the top force. gap_left: the gap before and after; neither where
-    the data held out show none."""
+    the data held out show none. law: that of contacts between grains."""
     values = diagnosis_figure_values(diagnosis)
     charts = [_where(values["where"], diagnosis.where_threshold)] if "where" in values else []
     if "which" in values:
@@ -30,6 +30,7 @@ def diagnosis_charts(diagnosis: Diagnosis) -> list[Chart]:
         forces = values["how_far"]["forces"]
         charts += [_how_far(forces)] if forces else []
         charts.append(_gap_left(values["how_far"], diagnosis.shrink.held_out))
+    charts += [_law(values["law"])] if "law" in values else []
     return charts
 
 
@@ -211,3 +212,22 @@ def _gap_left(values: Values, held_out: str) -> Chart:
               "yaxis": _rows_axis([f"{bar['words']}: {bar['gap_left']:.0f} %" for bar in bars], range=[len(bars) - 0.4, -0.6])}
     return Chart("gap_left", "Gap that is left", f"In held-out data ({held_out}), with its 90 % interval; placebo: the best of twenty "
                  "random effects.", go.Figure(trace, layout), height=110 + 36 * len(bars))
+
+
+def _law(values: Values) -> Chart:
+    traces = []
+    for curve in values["curves"]:
+        x, y, half = curve["x"], curve["y"], curve["half_band"]
+        edge = [a + b for a, b in zip(y, half)] + [a - b for a, b in zip(y[::-1], half[::-1])]
+        traces += [go.Scatter(x=x + x[::-1], y=edge, fill="toself", mode="none", fillcolor=curve["colour"], opacity=0.18, hoverinfo="skip",
+                              showlegend=False),
+                   go.Scatter(x=x, y=y, mode="lines+markers", name=plot_text(curve["words"]), marker={"size": 5, "color": curve["colour"]},
+                              line={"color": curve["colour"], "width": 2}, hovertemplate="%{x:.3f}<br>%{y:.1f} %<extra></extra>")]
+    layout = {"xaxis": titled(values["x_label"]), "yaxis": titled(values["y_label"]), "legend": {"x": 0.02, "y": 0.98}}
+    return Chart(
+        "law", "The law of contacts between grains",
+        "Force at equal overlap, measured over simulated, from the measured forces and positions of contacts, without the name of an effect; "
+        "overlaps are corrected for the surface displacement by the other contacts (gamma = 1 minus what the regression finds). Bands: 90 %. "
+        "A wrong modulus shifts a curve, another exponent tilts it; a curve that changes between loading and unloading shows a memory or a "
+        "change in time. The exponent assumes that the scene's contacts have Hertz's 3/2.",
+        go.Figure(traces, layout), height=400)

@@ -44,6 +44,7 @@ def add_diagnosis(page: Page, diagnosis: Diagnosis, name: str = "") -> None:
     page.section("Which")
     add_charts("which")
     page.table(words.causes_heading, _causes(diagnosis))
+    add_charts("law")
     page.table("What these data can show", _detection_limits(diagnosis))
     page.section("How far")
     if not diagnosis.shrink:

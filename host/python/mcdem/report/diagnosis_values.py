@@ -1,8 +1,9 @@
-"""Values of the figures of a diagnosis, as figures.json has them: where, which and how_far. None for unknown numbers."""
+"""Values of the figures of a diagnosis, as figures.json has them: where, which, how_far and law. None for unknown numbers."""
+from collections.abc import Sequence
 from math import ceil, isfinite
 from typing import Any
 
-from ..diagnosis.diagnosis_types import Cause, Diagnosis, GapReduction, WhereBin
+from ..diagnosis.diagnosis_types import Cause, ContactLaw, Diagnosis, GapReduction, WhereBin
 from ..json_text import finite
 from .diagnosis_text import SAME_DISPLACEMENT_MM, stands_out
 from .diagnosis_words import amount_with_error, percent, words_of
@@ -26,6 +27,8 @@ def diagnosis_figure_values(diagnosis: Diagnosis) -> Values:
         values["which"] = _which(diagnosis)
     if diagnosis.shrink and diagnosis.shrink.before > 0:
         values["how_far"] = _how_far(diagnosis.shrink, verdict_words(diagnosis))
+    if diagnosis.contact_laws:
+        values["law"] = _law(diagnosis.contact_laws)
     return values
 
 
@@ -123,3 +126,20 @@ def _how_far(shrink: GapReduction, words: VerdictWords) -> Values:
         add("after, simulated", AFTER, shrink.confirmed)
     add("placebo", FAINT, shrink.placebo)
     return {"gap_label": "gap left in held-out data [%]", "forces": _forces(shrink, words), "bars": bars}
+
+
+def shown_laws(laws: Sequence[ContactLaw]) -> list[ContactLaw]:
+    """At the largest displacement of each phase, and at the end of unloading."""
+    shown = []
+    for phase in ("load", "unload"):
+        of_phase = sorted((law for law in laws if law.phase == phase), key=lambda law: -law.displacement_mm)
+        shown += of_phase[:1] if phase == "load" else of_phase[:1] + of_phase[1:][-1:]
+    return shown
+
+
+def _law(laws: Sequence[ContactLaw]) -> Values:
+    return {"x_label": "overlap / R*", "y_label": "force, measured over simulated, minus one [%]", "curves": [
+        {"words": f"{law.phase}ing, {law.displacement_mm:.3g} mm: exponent {amount_with_error(law.exponent, law.exponent_error, '')}",
+         "colour": colour, "x": list(law.overlap), "y": [100 * change for change in law.change],
+         "half_band": [100 * SIGMAS_90 * error for error in law.change_error]}
+        for law, colour in zip(shown_laws(laws), (NAMED, BEFORE, FAINT))]}

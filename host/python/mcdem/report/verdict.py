@@ -3,6 +3,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from ..diagnosis.diagnosis_types import Cause, Diagnosis, NuisanceFit
+from ..diagnosis.mimics import mimics_of
 from .diagnosis_words import (amount, cause_words, check_words, listed, listed_names, p_words, percent, refinement_words, sigma_words,
                               suspect_words, words_of)
 from .labels import shortened
@@ -107,12 +108,18 @@ def _taken_away(diagnosis: Diagnosis, added: str) -> str:
     return f"; adding {added} takes away {percent(explanation.reduction)} of the gap" if explanation else ""
 
 
+def _or_alike(diagnosis: Diagnosis) -> str:
+    """What acts like the effects that are added but is in no library, as a continuation; empty if nothing is known."""
+    alike = dict.fromkeys(mimic.what for cause in added_causes(diagnosis) for mimic in mimics_of(cause.effect))
+    return f", or with something that acts like {'them' if len(added_causes(diagnosis)) > 1 else 'it'}: {'; '.join(alike)}" if alike else ""
+
+
 def _effect(diagnosis: Diagnosis) -> VerdictWords:
     leader, together = _leader_of(diagnosis), _together_with(diagnosis)
     name = cause_words(leader) if leader else "one effect"
     added = "both" if len(added_causes(diagnosis)) > 1 else "it"
-    which = f"consistent with {name}{together}, with a probability of {percent(leader.confidence)} ({library_words(diagnosis)})." \
-        if leader else "no effect is named."
+    which = (f"consistent with {name}{together}, with a probability of {percent(leader.confidence)} ({library_words(diagnosis)})"
+             f"{_or_alike(diagnosis)}.") if leader else "no effect is named."
     return replace(_of_an_effect(
         diagnosis, f"A gap; {'a pair of effects' if together else 'one effect'} {reduction_words(diagnosis)}",
         f"The gap is consistent with {name}{together}{_taken_away(diagnosis, added)}.", which), named=_names(diagnosis.causes))
@@ -127,7 +134,7 @@ def _group(diagnosis: Diagnosis) -> VerdictWords:
     members = leader.group if leader else ()
     known = {cause.effect: cause_words(cause) for cause in reversed((*diagnosis.causes, *diagnosis.ranking))}
     listed_members = listed(known.get(name) or words_of(name) for name in members)
-    which = f"consistent with any of {listed_members}{together}; these data cannot tell them apart." if leader else "no effect is named."
+    which = f"consistent with any of {listed_members}{together}; these data cannot tell them apart{_or_alike(diagnosis)}." if leader else "no effect is named."
     names = listed_names(members) if leader else "several effects"
     return replace(_of_an_effect(
         diagnosis, f"A gap; one of several effects {reduction_words(diagnosis)}",
