@@ -11,7 +11,7 @@ import numpy as np
 from drawn import figures
 from matplotlib.patches import Rectangle
 
-from report.diagnosis_samples import bare, cause, cell
+from report.diagnosis_samples import bare, cause, cell, contact_law
 
 THRESHOLD = 4
 LIMIT = 1e-3
@@ -39,7 +39,9 @@ def diagnosis():
         "shrink": {"held_out": "unloading", "before": 9, "after": 1, "fraction": 0.7, "interval": [0.6, 0.9], "placebo": 0.05,
                    "metrics": {}, "confirmed": 0.65, "fitted_displacement_mm": [0, 3], "top_force": FORCES},
         "detection_limits": [{"effect": name, "minimum_amplitude": LIMIT, "absorbed_by_calibration": 0, "unit": "N", "group": []}
-                             for name in pair]}
+                             for name in pair],
+        "contact_laws": [contact_law("load", 5, 1.7), contact_law("load", 10, 1.6), contact_law("unload", 10, 1.5),
+                         contact_law("unload", 5, 1.4), contact_law("unload", 2.5, 1.3)]}
 
 
 def setUpModule():
@@ -148,9 +150,24 @@ class HowFar(unittest.TestCase):
         self.assertEqual(len(figures.how_far(folder / "poor")), 1)
 
 
+class Law(unittest.TestCase):
+    def test_is_drawn_at_the_largest_displacement_and_at_the_end_of_unloading(self):
+        axes = figures.law(folder / "figures")
+        curves = [curve for curve in axes.lines if len(curve.get_xdata()) == 3]
+        for curve, exponent in zip(curves, (1.6, 1.5, 1.3), strict=True):
+            overlap = np.array([0.05, 0.1, 0.15])
+            np.testing.assert_allclose(curve.get_xdata(), overlap)
+            np.testing.assert_allclose(curve.get_ydata(), 100 * ((overlap / 0.1)**(exponent - 1.5) - 1), atol=1e-9)
+        texts = [text.get_text() for text in axes.get_legend().get_texts()]
+        self.assertEqual(texts[0], "loading, 10 mm: exponent 1.600 ± 0.020")
+        self.assertEqual(texts[2], "unloading, 2.5 mm: exponent 1.300 ± 0.020")
+        band = axes.collections[0].get_paths()[0].vertices[:, 1]
+        self.assertAlmostEqual(band.max() - 100 * (1.5**0.1 - 1), 1.6449 * 3, places=6)
+
+
 class Command(unittest.TestCase):
     def test_what_is_not_known_is_not_drawn(self):
-        unknown = diagnosis() | {"cells": [cell("top_force", None, 1, None, None)], "shrink": None,
+        unknown = diagnosis() | {"cells": [cell("top_force", None, 1, None, None)], "shrink": None, "contact_laws": [],
                                  "ranking": [candidate("adhesion", None, [], None, None)]}
         (folder / "bare.json").write_text(json.dumps(unknown))
         self.assertEqual(mcdem("figures", "bare.json", "--out", "bare"), "bare/which.png\n")
@@ -161,7 +178,7 @@ class Command(unittest.TestCase):
         self.assertIn("cannot be combined with other runs", done.stderr)
 
     def test_print_size(self):
-        for name, width in (("where", 178), ("which", 178), ("how_far", 86)):
+        for name, width in (("where", 178), ("which", 178), ("how_far", 86), ("law", 86)):
             self.assertAlmostEqual(plt.imread(folder / f"figures/{name}.png").shape[1] / 300 / drawn.MILLIMETRE, width, delta=0.2)
 
 

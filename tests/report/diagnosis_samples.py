@@ -60,6 +60,12 @@ def packing(experiment, gap_p, amplitude, error, agreement_p, differs):
             "differs": differs}
 
 
+def contact_law(phase, displacement, exponent):
+    overlap = [0.05, 0.1, 0.15]
+    return {"phase": phase, "displacement_mm": displacement, "overlap": overlap, "change": [(x / 0.1)**(exponent - 1.5) - 1 for x in overlap],
+            "change_error": [0.02, 0.01, 0.03], "exponent": exponent, "exponent_error": 0.02}
+
+
 def bare(verdict="no_gap"):
     """Nothing but a verdict."""
     lists = ("where", "causes", "detection_limits", "not_measured", "cells", "ranking", "nuisances", "check_first", "missing_bins",
@@ -159,6 +165,7 @@ def _sample(verdict):
     if verdict == "effect":
         first["confirmed_score"] = 44.1
         d["packings"] = [packing("packing_1", 0.003, 2.6e-4, 3e-5, 0.31, False), packing("packing_2", 0.02, 2.2e-4, 3e-5, 0.31, False)]
+        d["contact_laws"] = [contact_law("load", 18, 1.6), contact_law("load", 29.4, 1.65), contact_law("unload", 29.4, 1.4)]
         d["missing_bins"] = [missing("friction", 4, 8, False), missing("modulus", 1, 9, True)]
     elif verdict == "group":
         for c in range(3):

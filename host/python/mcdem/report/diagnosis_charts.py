@@ -227,7 +227,7 @@ def _law(values: Values) -> Chart:
     return Chart(
         "law", "The law of contacts between grains",
         "Force at equal overlap, measured over simulated, from the measured forces and positions of contacts, without the name of an effect; "
-        "overlaps are corrected for the surface displacement by the other contacts (gamma = 1 minus what the regression finds). Bands: 90 %. "
+        "overlaps are corrected for the surface displacement by the other contacts. Bands: 90 %. "
         "A wrong modulus shifts a curve, another exponent tilts it; a curve that changes between loading and unloading shows a memory or a "
         "change in time. The exponent assumes that the scene's contacts have Hertz's 3/2.",
         go.Figure(traces, layout), height=400)

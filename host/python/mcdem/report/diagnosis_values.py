@@ -138,7 +138,7 @@ def shown_laws(laws: Sequence[ContactLaw]) -> list[ContactLaw]:
 
 
 def _law(laws: Sequence[ContactLaw]) -> Values:
-    return {"x_label": "overlap / R*", "y_label": "force, measured over simulated, minus one [%]", "curves": [
+    return {"x_label": "overlap / R*", "y_label": "force above the simulated one [%]", "curves": [
         {"words": f"{law.phase}ing, {law.displacement_mm:.3g} mm: exponent {amount_with_error(law.exponent, law.exponent_error, '')}",
          "colour": colour, "x": list(law.overlap), "y": [100 * change for change in law.change],
          "half_band": [100 * SIGMAS_90 * error for error in law.change_error]}
