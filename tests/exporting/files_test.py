@@ -37,6 +37,11 @@ class Xyz(Case):
         words = [line.split()[0] for line in self.text(SECOND + ".xyz").splitlines()[2:]]
         self.assertEqual(words[:3], ["soft", "half_stiff", "soft"])
 
+    def test_different_species_have_different_words(self):
+        for names, words in ((["a b", "a_b"], ["a_b_0", "a_b_1"]), (["a\u2028b", "c"], ["a_b", "c"]), (["a b", "a_b_0"], ["a_b", "a_b_0"]),
+                             (["a b", "a_b", "a_b_0"], ["a_b_0_0", "a_b_1", "a_b_0_2"])):
+            self.assertEqual(xyz.single_words(names), words)
+
     def test_a_tilted_cell(self):
         run = make_run()
         run[0].shape, run[0].edges = "cell", [0.1, 0.2, 0.4]

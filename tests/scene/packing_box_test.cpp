@@ -224,6 +224,22 @@ TEST_F(PackingBox, ALoadedPackingWarnsThatItsHistoryIsLost) {
     EXPECT_THAT(warnings(in_box, at_rest, "p.csv"), IsEmpty()) << "0.5 % of a diameter";
 }
 
+TEST_F(PackingBox, WhatIsNotReadIsTold) {
+    const std::string rows = ",.03,.03,.01,.02,9\nb,.03,.03,.031,.02,9\n";
+    EXPECT_THAT(warnings(in_box, "grain,x_m,y_m,z_m,diameter_m,frame\n0" + rows, "p.csv"), IsEmpty());
+    EXPECT_THAT(warnings(in_box, "grain,x_m,y_m,z_m,diameter_m,density\n0" + rows, "p.csv"),
+                ElementsAre(HasSubstr(
+                    "p.csv: density is not read: other columns than those listed in scenes/README.md")));
+    EXPECT_THAT(warnings(in_box, "vx,x_m,y_m,z_m,diameter_m,vy\n0" + rows, "p.csv"),
+                ElementsAre(HasSubstr("p.csv: vx, vy are not read")));
+    const std::string unlike = "type,x_m,y_m,z_m,diameter_m,frame\na" + rows;
+    EXPECT_THAT(warnings(in_box, unlike, "p.csv"),
+                ElementsAre(HasSubstr(
+                    "p.csv: its grains are of 2 species (a, b), but the scene does not distinguish them")));
+    EXPECT_THAT(warnings(in_box + "[[species]]\nname = \"a\"\n[[species]]\nname = \"b\"\n", unlike, "p.csv"),
+                IsEmpty());
+}
+
 /// A grain of 36 mm with `count` grains of 6 mm around it, above the floor.
 std::string crowd(int count) {
     std::string rows = "x_m,y_m,z_m,diameter_m\n.04,.04,.04,.036\n";

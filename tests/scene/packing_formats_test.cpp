@@ -85,6 +85,13 @@ TEST(PackingOfYade, OtherColumnsAreIgnored) {
         1);
 }
 
+TEST(PackingOfYade, AnyCommentThatNamesTheCoordinatesNamesTheColumns) {
+    const Packing packing = read_yade_packing("# id z y x radius\n1 3 2 1 0.5\n", "t");
+    EXPECT_EQ(packing.position[0], Vec3(1, 2, 3));
+    EXPECT_EQ(packing.diameter[0], 1);
+    EXPECT_EQ(read_yade_packing("# x y z d diameter\n1 2 3 4 0.5\n", "t").diameter[0], 0.5);
+}
+
 TEST(PackingOfYade, AFormatLineBetweenRowsIsIgnored) {
     const Packing packing = read_yade_packing("#format x_y_z_r\n1 2 3 0.5\n#format 0.0\n4 5 6 0.5\n", "t");
     ASSERT_EQ(packing.size(), 2u);

@@ -24,8 +24,9 @@ struct StatedBox {
 };
 
 struct FilePacking : Packing {
-    std::optional<StatedBox> box = {};  ///< if the file has lines about it
-    std::vector<double> density = {};   ///< of each grain [kg/m3]; empty if the file does not say
+    std::optional<StatedBox> box = {};     ///< if the file has lines about it
+    std::vector<double> density = {};      ///< of each grain [kg/m3]; empty if the file does not say
+    std::vector<std::string> unread = {};  ///< columns of a CSV file that mean nothing here
 };
 
 /// Reads the packing of a file; `frame` as in read_packing. Throws InputError.

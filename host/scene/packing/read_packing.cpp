@@ -228,9 +228,17 @@ bool is_row(std::string_view line) {
     return !line.empty() && line.front() != '#';
 }
 
-/// Columns in a line `#format x_y_z_r_matId`.
-std::vector<std::string> columns_of(std::string_view format) {
+/// Columns in a line `#format x_y_z_r_matId`, or in another comment if it names x, y and z; otherwise none.
+std::vector<std::string> columns_of(std::string_view comment) {
     std::vector<std::string> names;
+    if (!comment.starts_with(mark)) {
+        std::vector<std::string_view> words;
+        split_at_blanks(comment, words);
+        const auto has = [&](std::string_view word) { return std::ranges::find(words, word) != words.end(); };
+        if (has("x") && has("y") && has("z")) names.assign(words.begin(), words.end());
+        return names;
+    }
+    const std::string_view format = without_blanks(comment.substr(mark.size()));
     for (std::size_t first = 0; first < format.size();) {
         const auto end = std::min(format.find('_', first), format.size());
         names.emplace_back(format.substr(first, end - first));
@@ -274,19 +282,25 @@ bool looks_like_yade(std::string_view text) {
 
 FilePacking read_yade_packing(std::string_view text, const std::string& source) {
     FileProblems problems(source);
-    std::vector<std::string> names{"x", "y", "z", "r"};
+    const std::vector<std::string> plain{"x", "y", "z", "r"};
+    std::vector<std::string> names;
     std::optional<GrainRows> grains;
     std::vector<std::string_view> words;
     TextLines lines(text);
     std::size_t width = 0;
     for (auto line = lines.next(); line && !problems.full(); line = lines.next()) {
-        const std::string_view comment = comment_of(*line);
-        if (!grains && comment.starts_with(mark))
-            names = columns_of(without_blanks(comment.substr(mark.size())));
+        if (const auto named = columns_of(comment_of(*line)); !grains && !named.empty()) names = named;
         if (!is_row(*line)) continue;
         split_at_blanks(*line, words);
         if (!grains) {
             width = words.size();
+            if (names.empty() && width > plain.size())
+                problems.add(
+                    lines.number(),
+                    fmt::format("must have 4 columns, x y z r, where no line names them, got {}: write "
+                                "a line such as \"#format x_y_z_r_matId\" before",
+                                width));
+            if (names.empty()) names = plain;
             grains.emplace(GrainColumns::named(names, source), names, problems);
         }
         if (words.size() == width && width >= names.size() - (names.back() == "attrs" ? 1 : 0))
@@ -336,7 +350,10 @@ FilePacking read_csv_packing(const std::string& text, const std::string& source,
     if (grains.size() == 0 && problems.empty() && !frames.empty())
         problems.add(fmt::format("the frame must be one of its {} frames, {} to {}, got {}", frames.size(),
                                  *frames.begin(), *frames.rbegin(), *wanted));
-    return grains.packing();
+    FilePacking packing = grains.packing();
+    packing.unread = table.others();
+    std::erase(packing.unread, "grain");  // of an experiment's grains.csv
+    return packing;
 }
 
 FilePacking read_packing(const std::filesystem::path& file, std::optional<long> frame) {

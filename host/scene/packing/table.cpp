@@ -80,6 +80,7 @@ void Table::read_header() {
     for (std::string_view name : names) {
         const auto found = std::ranges::find(columns_, name);
         column_of_word_.push_back(found == columns_.end() ? -1 : static_cast<int>(found - columns_.begin()));
+        if (found == columns_.end() && !name.empty()) others_.emplace_back(name);
     }
     if (problems_.count() > problems_before) lines_.reset();
 }

@@ -22,6 +22,8 @@ public:
     /// is unusable; a table without rows is a problem. Empty lines and lines that start with # are skipped.
     bool next();
 
+    /// Names in the header that are none of the columns.
+    const std::vector<std::string>& others() const { return others_; }
     /// Whether the header contains the column.
     bool has(std::size_t column) const;
     std::string_view text(std::size_t column) const { return words_[column]; }
@@ -37,7 +39,7 @@ private:
     /// The next line that is neither empty nor a comment.
     std::optional<std::string_view> next_line();
     std::string name_;
-    std::vector<std::string> columns_;
+    std::vector<std::string> columns_, others_;
     std::size_t needed_;  ///< number of required columns, which come first
     FileProblems& problems_;
     std::optional<TextLines> lines_;

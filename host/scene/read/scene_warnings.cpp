@@ -54,6 +54,23 @@ std::string lost_history(const Replica& replica, const ReadFile& read, const std
         file, 100 * read.overlap, fmt::join(memory, ", "));
 }
 
+/// Columns of a CSV file that have no meaning; empty if there are none.
+std::string not_read(const FilePacking& packing, const std::string& file) {
+    if (packing.unread.empty()) return "";
+    return fmt::format(
+        "{}: {} {} not read: other columns than those listed in scenes/README.md, Packings, mean nothing",
+        file, fmt::join(packing.unread, ", "), packing.unread.size() == 1 ? "is" : "are");
+}
+
+/// Species of a file for a scene that does not distinguish them; empty if there is nothing to say.
+std::string not_distinguished(const Replica& replica, const FilePacking& packing, const std::string& file) {
+    if (replica.species.size() > 1 || packing.species_names.size() < 2) return "";
+    return fmt::format(
+        "{}: its grains are of {} species ({}), but the scene does not distinguish them: all are of one "
+        "material, unless it has as many [[species]]",
+        file, packing.species_names.size(), fmt::join(packing.species_names, ", "));
+}
+
 /// Generated grains so unlike that the largest may have more neighbours than there can be slots; empty if
 /// not.
 std::string too_unlike(const Replica& replica, const GeneratedPacking& grains) {
@@ -85,6 +102,8 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
         for (const std::string& warning : compare_box(packing, packing.box, replica.box).warnings)
             add(warning);
         add(lost_history(replica, place->second, file->path));
+        add(not_read(packing, file->path));
+        add(not_distinguished(replica, packing, file->path));
     }
     return warnings;
 }

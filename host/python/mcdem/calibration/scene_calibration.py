@@ -129,6 +129,6 @@ def _note_other_materials(scene: "Scene", reference: Replicas, model: ContactMod
 
 def check_stroke(stroke: float, displacement: float) -> None:
     """Raises InputError if the stroke of the scene does not reach the greatest displacement of the reference [m]."""
-    if stroke < displacement - level_tolerance:
+    if stroke < displacement - min(level_tolerance, 0.01 * displacement):
         raise InputError("calibrate: plate.start - plate.end must reach the reference's greatest displacement of "
                          f"{displacement * 1e3:.3f} mm, got {stroke * 1e3:.3f} mm")

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from ..number_text import mm
 from ..parts import interruptible
 from ..program import say
 from ..progress import Progress
@@ -139,7 +140,7 @@ def _text(result: "SceneCalibration") -> str:
             for value, force in zip(one.values.tolist(), one.top_force.tolist(), strict=True)]
     table = TextTable([Column("round"), Column("E [kPa]" if result.of_modulus else "gamma"), Column("top force [N]")], rows)
     found = Estimate(unit * result.found.value, unit * result.standard_error)
-    lines = [f"target: {_with_error(result.target, 3)} N at {result.displacement * 1e3:.2f} mm; {result.replicas} "
+    lines = [f"target: {_with_error(result.target, 3)} N at {mm(result.displacement)} mm; {result.replicas} "
              f"replica{'' if result.replicas == 1 else 's'} for each value",
              f"{name} = {_with_error(found, 4)}{in_kPa}"
              + ("" if result.found.converged else " (tolerance not reached: raise --rounds, or use more replicas)")]

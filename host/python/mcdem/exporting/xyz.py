@@ -53,6 +53,14 @@ def export_replica(replica, folder, is_chosen):
     return 2
 
 
+def single_words(names):
+    """The names of species without blanks, each different from the others: two that become alike get their number."""
+    words = ["_".join(name.split()) for name in names]
+    while len(set(words)) < len(words):
+        words = [word if words.count(word) == 1 else f"{word}_{number}" for number, word in enumerate(words)]
+    return words
+
+
 def rows(form, *columns):
     """A line of text for each row; a column has one or several values a row."""
     split = [part.tolist() for column in columns for part in np.atleast_2d(np.asarray(column).T)]
@@ -66,7 +74,7 @@ def numbers(values):
 def grains_frame(scan):
     replica, contacts = scan.replica, scan.contacts
     count = len(scan.position)
-    names = np.array([name.replace(" ", "_") for name in replica.species_names], object)
+    names = np.array(single_words(replica.species_names), object)
     types = np.full(count, "X", object) if replica.species is None else names[replica.species]
     periodic = {"cell": "T T T", "periodic": "T T F"}.get(replica.shape, "F F F")
     label = replica.label.replace('"', "'").replace("\n", " ")  # extended XYZ cannot represent a double quote

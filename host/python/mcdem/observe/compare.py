@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ..errors import InputError
+from ..number_text import mm
 from .coordination import CoordinationError, coordination_error, reference_coordination
 from .estimate import Estimate, Jackknife
 from .force_distribution import DistributionDistance, distribution_distance
-from .levels import LevelMatch, Levels, group_levels, level_tolerance, match_levels
+from .levels import LevelMatch, Levels, group_levels, match_levels
 from .replicas import Replicas, Setting, seeds_of
 from .top_force import TopForceRatio, top_force_error, top_force_ratio
-
-MM = 1e-3
 
 
 @dataclass(frozen=True)
@@ -73,9 +72,9 @@ def _level_notes(reference: Levels, matches: Sequence[LevelMatch]) -> list[str]:
 def _stroke_notes(ratio: TopForceRatio) -> list[str]:
     if math.isnan(ratio.displacement):
         return ["Rtop: no replica came to the end of its protocol"]
-    if ratio.displacement < ratio.reference_end - level_tolerance:
-        return [f"Rtop is taken at {ratio.displacement / MM:.2f} mm, where the simulation ends; the reference goes to "
-                f"{ratio.reference_end / MM:.2f} mm"]
+    if ratio.displacement < ratio.reference_end:
+        return [f"Rtop is taken at {mm(ratio.displacement)} mm, where the simulation ends; the reference goes to "
+                f"{mm(ratio.reference_end)} mm"]
     return []
 
 

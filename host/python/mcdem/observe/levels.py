@@ -134,6 +134,12 @@ def level_means(levels: Levels, values: Floats | Quantity) -> list[LevelMean]:
     return [LevelMean(level.phase, level.displacement, mean_over_replicas(values[:, k])) for k, level in enumerate(levels)]
 
 
+def tolerance_of(levels: Levels) -> float:
+    """Displacements within it are the same [m]: `level_tolerance`, or a tenth of the median distance of the levels if they are closer."""
+    ways = np.concatenate([np.diff([0.0, *(level.displacement for level in levels if level.phase == phase)]) for phase in Phase])
+    return min(level_tolerance, float(np.median(ways[ways > 0])) / 10) if (ways > 0).any() else level_tolerance
+
+
 def match_levels(simulated: Levels, reference: Levels) -> list[LevelMatch]:
     """One match for each reference level.
 
@@ -142,16 +148,17 @@ def match_levels(simulated: Levels, reference: Levels) -> list[LevelMatch]:
     """
     of_phase = {phase: [s for s, level in enumerate(simulated) if level.phase == phase] for phase in Phase}
     displacements = {phase: np.array([simulated[s].displacement for s in of_phase[phase]]) for phase in Phase}
-    return [_match(of_phase[level.phase], displacements[level.phase], level.displacement) for level in reference]
+    tolerance = tolerance_of(simulated)
+    return [_match(of_phase[level.phase], displacements[level.phase], level.displacement, tolerance) for level in reference]
 
 
-def _match(indices: Sequence[int], ascending: Floats, wanted: float) -> LevelMatch:
+def _match(indices: Sequence[int], ascending: Floats, wanted: float, tolerance: float) -> LevelMatch:
     """`b` and `a`: the neighbours below and above, equal if a level is met."""
     b, a = int(np.searchsorted(ascending, wanted, "right")) - 1, int(np.searchsorted(ascending, wanted, "left"))
     to_below = abs(ascending[b] - wanted) if b >= 0 else math.inf
     to_above = abs(ascending[a] - wanted) if a < len(ascending) else math.inf
     is_dense = to_below + to_above < 4 * level_tolerance
-    if min(to_below, to_above) <= level_tolerance and (not is_dense or a == b):
+    if min(to_below, to_above) <= tolerance and (not is_dense or a == b):
         nearest = indices[b if to_below <= to_above else a]
         return LevelMatch(nearest, nearest, 0.0)
     if math.isfinite(to_below + to_above):

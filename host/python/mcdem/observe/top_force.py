@@ -7,7 +7,7 @@ import numpy as np
 from ..results.names import Phase
 from ..results.recording import Floats
 from .estimate import Estimate, Omission, Sample, not_available, ratio_of_means
-from .levels import Level, LevelMatch, Levels, at_reference, by_replica, level_tolerance, match_levels, mean_without, top_force
+from .levels import Level, LevelMatch, Levels, at_reference, by_replica, match_levels, mean_without, tolerance_of, top_force
 from .replicas import Replicas, seeds_of
 
 
@@ -53,7 +53,7 @@ def top_force_ratio(simulated: Levels, simulated_replicas: Replicas, reference: 
     reference_end, simulated_end = full_stroke(reference, reference_replicas), full_stroke(simulated, simulated_replicas)
     if np.isnan(simulated_end) or np.isnan(reference_end):
         return TopForceRatio(reference_end=reference_end)
-    displacement = simulated_end if simulated_end < reference_end - level_tolerance else reference_end
+    displacement = simulated_end if simulated_end < reference_end - tolerance_of(simulated) else reference_end
     ratio = ratio_of_means(top_force_at(simulated, simulated_replicas, displacement),
                            top_force_at(reference, reference_replicas, displacement))
     return TopForceRatio(ratio, displacement, reference_end)

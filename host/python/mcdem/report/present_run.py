@@ -3,6 +3,7 @@ import os
 import sys
 from collections.abc import Sequence
 
+from ..number_text import mm
 from ..observe.model_table import model_table
 from ..observe.programmes import with_programme
 from ..observe.replicas import Setting, group_by_setting
@@ -36,7 +37,7 @@ def _print_forces(settings: Sequence[Setting]) -> None:
     elif len(models.rows) == 1 and models.rows[0].top_force.available():
         row = models.rows[0]
         where = row.reached if row.reached is not None else models.displacement
-        print(f"force on the plate: {with_error(row.top_force, 2)} N at {1e3 * where:.2f} mm", flush=True)
+        print(f"force on the plate: {with_error(row.top_force, 2)} N at {mm(where)} mm", flush=True)
 
 
 if __name__ == "__main__":

@@ -129,7 +129,7 @@ def _shown_levels(strokes: Sequence[Series], displacement: float) -> list[tuple[
     """Of unloading, unless the first series was loaded nearer to the displacement, as at the turning point; of the other phase for series
     that have no contacts in this one, as unloading of runs that stopped early."""
     load, unload = (_nearest_level(series, displacement, phase) for series in strokes[:1] for phase in Phase) if strokes else (None, None)
-    alike = 1e-6  # [m]
+    alike = 1e-4 * (load.displacement if load else 0)  # of rounding
     is_loading = load and unload and abs(load.displacement - displacement) < abs(unload.displacement - displacement) - alike
     phase = Phase.load if is_loading else Phase.unload
     shown = ((series, _nearest_level(series, displacement, phase) or _nearest_level(series, displacement, Phase(1 - phase)))

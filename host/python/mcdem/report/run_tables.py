@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..number_text import mm
 from ..observe.compare import Comparison
 from ..observe.estimate import mean_over_replicas
 from ..observe.levels import group_levels
@@ -23,16 +24,16 @@ ENERGIES = {"work of walls": "wall_work", "of weight": "weight_work", "elastic":
 
 def table_of_models(models: ModelTable) -> TextTable:
     """Top force at full stroke (or at the last scan, marked) and its ratio to the reference setting."""
-    force = f"top force at {models.displacement * 1e3:.2f} mm [N]" if math.isfinite(models.displacement) else "top force [N]"
+    force = f"top force at {mm(models.displacement)} mm [N]" if math.isfinite(models.displacement) else "top force [N]"
     some_failed = any(row.failed for row in models.rows)
     rows, notes, marked = [], [], False
     for row in models.rows:
-        words, mark = words_for(row.setting), "" if row.reached is None else f" * at {row.reached * 1e3:.2f} mm"
+        words, mark = words_for(row.setting), "" if row.reached is None else f" * at {mm(row.reached)} mm"
         rows.append([words, with_error(row.top_force, 2) + mark, with_error(row.ratio, 3), str(row.replicas),
                      *([str(row.failed)] if some_failed else [])])
         marked = marked or bool(mark)
         if row.beyond:
-            notes.append(beyond_note(words, f"{row.beyond.displacement * 1e3:.2f} mm", row.beyond))
+            notes.append(beyond_note(words, f"{mm(row.beyond.displacement)} mm", row.beyond))
     if marked:
         notes.insert(0, "*: no replica reached full stroke; force and ratio are of the last scan")
     if math.isfinite(models.rate_error):

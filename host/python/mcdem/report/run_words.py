@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..number_text import mm
 from ..observe.model_table import model_table
 from ..observe.programmes import are_cells, mean_scans, with_programme
 from ..observe.replicas import Setting
@@ -88,12 +89,12 @@ def _of_strokes(settings: Sequence[Setting]) -> str:
     table = model_table(settings)
     quantity = "Force on the plate"
     if math.isfinite(table.displacement):
-        quantity += f" at {table.displacement * 1e3:.2f} mm"
+        quantity += f" at {mm(table.displacement)} mm"
         if any(row.reached is not None for row in table.rows):
             quantity += ", or as far as a replica came"
     return _listed(quantity, [
         Reached(row.setting, row.top_force.value, with_error(row.top_force, 2) + " N"
-                + ("" if row.reached is None else f" at {row.reached * 1e3:.2f} mm")) for row in table.rows])
+                + ("" if row.reached is None else f" at {mm(row.reached)} mm")) for row in table.rows])
 
 
 def _of_programmes(settings: Sequence[Setting]) -> tuple[str, str]:
@@ -111,6 +112,6 @@ def _of_programmes(settings: Sequence[Setting]) -> tuple[str, str]:
             words = f"{three_digits(most.p.value / unit.size)} {unit.name} at φ = {most.packing_fraction.value:.3f}"
             cells.append(Reached(setting.label, most.p.value, words))
         else:
-            words = f"{three_digits(most.top_force.value)} N at {most.displacement.value * 1e3:.2f} mm"
+            words = f"{three_digits(most.top_force.value)} N at {mm(most.displacement.value)} mm"
             plates.append(Reached(setting.label, most.top_force.value, words))
     return _listed("Largest force on the plate", plates), _listed("Largest mean stress", cells)
