@@ -80,7 +80,7 @@ std::vector<Recording> simulate(Device& device, const Scene& scene, const std::v
     for (std::size_t r = 0; r < packings.size(); ++r)
         recordings.push_back(begin_recording(scene.replicas[r], packings[r]));
     Simulation simulation(device, scene, packings);
-    const auto keep = [&](int replica, Scan scan) {
+    const auto keep = [&](int replica, Scan& scan) {
         const auto r = static_cast<std::size_t>(replica);
         recordings[r].scans.push_back(std::move(scan));
         if (early.is_enough(r, recordings[r])) simulation.end(replica);

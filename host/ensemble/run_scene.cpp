@@ -139,7 +139,7 @@ private:
     RunIdentity identity_;
     ResultFolder folder_;
     Simulation simulation_;
-    const Simulation::ScanSink keep_ = [this](int r, Scan scan) { keep(r, std::move(scan)); };
+    const Simulation::ScanSink keep_ = [this](int r, Scan& scan) { keep(r, std::move(scan)); };
     const Simulation::FailureSink note_ = [this](int r, const Failure& failure) { note(r, failure); };
     Run pending_;                ///< provenance, and the scans since the last segment
     bool anything_new_ = false;  ///< in pending_

@@ -1,6 +1,7 @@
 #include "sim/averages.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -15,9 +16,10 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Points evenly distributed in the unit ball: a golden-angle spiral with radii from a separate sequence.
-const std::vector<Vec3>& ball_points() {
-    static const std::vector<Vec3> points = [] {
+/// Points evenly distributed in the unit ball: a golden-angle spiral with radii from a separate sequence. In
+/// ascending order of the coordinate along `axis`.
+const std::vector<Vec3>& ball_points(int axis) {
+    static const std::array<std::vector<Vec3>, 3> points = [] {
         constexpr int count = 512;
         std::vector<Vec3> all;
         for (int k = 0; k < count; ++k) {
@@ -27,9 +29,11 @@ const std::vector<Vec3>& ball_points() {
             const double rim = std::sqrt(1 - z * z);
             all.push_back(shell * Vec3(rim * std::cos(angle), rim * std::sin(angle), z));
         }
-        return all;
+        std::array<std::vector<Vec3>, 3> sorted{all, all, all};
+        for (int k = 0; k < 3; ++k) std::ranges::sort(sorted[k], {}, [&](const Vec3& p) { return p[k]; });
+        return sorted;
     }();
-    return points;
+    return points[axis];
 }
 
 /// The region farther than a margin from every wall.
@@ -52,19 +56,28 @@ public:
     /// Fraction of a sphere's volume inside the region.
     double part_inside(const Vec3& centre, double radius) const {
         const double out = from_axis(box_, centre).norm();
-        if (((centre.array() - radius) >= low_.array()).all() &&
-            ((centre.array() + radius) <= high_.array()).all() && out + radius <= radius_)
-            return 1;
-        if (((centre.array() + radius) <= low_.array()).any() ||
-            ((centre.array() - radius) >= high_.array()).any() || out - radius >= radius_)
+        const Vec3 first = centre.array() - radius, last = centre.array() + radius;
+        if ((last.array() <= low_.array()).any() || (first.array() >= high_.array()).any() ||
+            out - radius >= radius_)
             return 0;
-        int inside = 0;
-        for (const auto& point : ball_points()) {
+        int cuts = out + radius > radius_, axis = 0;  // walls other than that along `axis`
+        bool any = false;
+        for (int k = 0; k < 3; ++k)
+            if (first[k] < low_[k] || last[k] > high_[k]) any ? ++cuts : (any = true, axis = k);
+        if (!any && cuts == 0) return 1;
+        // Along one axis the points inside are neighbours in its order.
+        const auto& points = ball_points(axis);
+        const auto at = [&](const Vec3& point) { return centre[axis] + radius * point[axis]; };
+        const auto begin =
+            std::ranges::partition_point(points, [&](const Vec3& p) { return !(at(p) > low_[axis]); });
+        const auto end =
+            std::partition_point(begin, points.end(), [&](const Vec3& p) { return at(p) < high_[axis]; });
+        const auto inside = cuts == 0 ? end - begin : std::count_if(begin, end, [&](const Vec3& point) {
             const Vec3 at = centre + radius * point;
-            inside += (at.array() > low_.array()).all() && (at.array() < high_.array()).all() &&
-                      from_axis(box_, at).norm() < radius_;
-        }
-        return static_cast<double>(inside) / ball_points().size();
+            return (at.array() > low_.array()).all() && (at.array() < high_.array()).all() &&
+                   from_axis(box_, at).norm() < radius_;
+        });
+        return static_cast<double>(inside) / static_cast<double>(points.size());
     }
 
 private:
@@ -90,8 +103,8 @@ double packing_fraction(const std::vector<Vec3>& position, const std::vector<dou
     if (interior.empty()) return not_a_number;
     double volume = 0;
     for (std::size_t i = 0; i < position.size(); ++i)
-        volume += std::numbers::pi / 6 * std::pow(diameter[i], 3) *
-                  interior.part_inside(position[i], 0.5 * diameter[i]);
+        if (const double part = interior.part_inside(position[i], 0.5 * diameter[i]); part > 0)
+            volume += std::numbers::pi / 6 * std::pow(diameter[i], 3) * part;
     return volume / interior.volume();
 }
 

@@ -124,10 +124,13 @@ public:
     /// Starts to copy the states after the last interval from the device. `replicas` must be ascending;
     /// adjacent replicas are read together.
     std::vector<Readings> begin_reading(const std::vector<int>& replicas) const;
-    /// Calls use(i, state of replica i of those read) for every i, on all cores and in any order. Another
-    /// interval may have begun, but not finished, since the reading began.
-    void for_each_state(const std::vector<Readings>& read,
-                        const std::function<void(std::size_t, ReplicaState)>& use) const;
+    /// Calls `use` for every replica of those read, the i-th of all, on all cores and in any order. It may
+    /// call take_state(). Another interval may have begun, but not finished, since the reading began.
+    void for_each_state(
+        const std::vector<Readings>& read,
+        const std::function<void(std::size_t i, int replica, const Readings& read)>& use) const;
+    /// Replaces positions, rotations and contacts of `scan`; their memory is used again.
+    void take_state(int replica, const Readings& read, Scan& scan) const;
     /// Positions and contacts after the last interval of `replica`.
     ReplicaState state(int replica) const;
     Precision precision() const { return build_.precision; }
@@ -209,12 +212,14 @@ private:
     std::vector<double> reals(const std::vector<std::byte>& bytes, std::size_t first,
                               std::size_t count) const;
     Readings begin_reading(int first_replica, int last_replica) const;
-    ReplicaState state(int replica, const Readings& readings) const;
+    template <class Real>
+    void take_state_of(int replica, const Readings& read, Scan& scan) const;
+    template <class Real>
+    void take_contacts(int replica, const Readings& read, Scan& scan) const;
     GrainForces forces(int replica, const std::vector<Vec3>& position) const;
     void write_motion(int replica, const GrainMotion& motion);
-    Vec3 direction(int replica, const std::vector<Vec3>& position, int grain, int partner) const;
-    std::vector<Contact> contacts(int replica, const std::vector<Vec3>& position,
-                                  const Readings& readings) const;
+    Vec3 direction(int replica, const Box& box, const std::vector<Vec3>& position, int grain,
+                   int partner) const;
 
     KernelBuild build_;
     std::size_t enough_replicas_;  ///< see enough_replicas()

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/container.h"
 #include "sim/engine.h"
 
 namespace mcdem::inline sim {
@@ -44,6 +45,7 @@ GrainForces Engine::forces(int replica, const std::vector<Vec3>& position) const
     std::vector<int> partner(count);
     std::memcpy(partner.data(), read.partner.data(), count * sizeof(int));
     const auto& order = layout_.order[replica];
+    const Box box = deformed(replicas_[replica].box, run(replica).strain);
     const std::size_t row = static_cast<std::size_t>(build_.lanes) * static_cast<std::size_t>(build_.slots);
     const auto radii = reals(read.motion, 0, reals_of_motion * order.size());
     const auto radius = [&](std::size_t place) { return radii[reals_of_motion * place + 3]; };
@@ -56,7 +58,7 @@ GrainForces Engine::forces(int replica, const std::vector<Vec3>& position) const
         const double* const along_x = &force[slot / row * 3 * row + slot % row];
         const Vec3 here(along_x[0], along_x[row], along_x[2 * row]);
         sums.force[grain] += here;
-        sums.torque[grain] += arm[slot] * direction(replica, position, grain, partner[slot]).cross(here);
+        sums.torque[grain] += arm[slot] * direction(replica, box, position, grain, partner[slot]).cross(here);
         const double other = partner[slot] < 0 ? 0 : radius(static_cast<std::size_t>(partner[slot]) - first);
         sums.deepest_overlap = std::max(sums.deepest_overlap, overlap[slot] / (radius(place) + other));
     }

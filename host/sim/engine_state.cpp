@@ -3,12 +3,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "core/container.h"
 #include "core/errors.h"
 #include "core/expects.h"
 #include "core/in_parallel.h"
+#include "scene/packing/neighbour_slots.h"
 #include "scene/plate_face.h"
 #include "sim/batch_limits.h"
 #include "sim/device_replica.h"
@@ -17,25 +19,29 @@
 namespace mcdem::inline sim {
 namespace {
 
-/// A vector of each grain's motion that begins at real number `first`.
-std::vector<Vec3> by_grain(const std::vector<double>& motion, std::size_t first,
-                           const std::vector<int>& order) {
-    std::vector<Vec3> vectors(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        const double* at = &motion[reals_of_motion * k + first];
-        vectors[order[k]] = {at[0], at[1], at[2]};
-    }
-    return vectors;
+/// Vectors of the grains from the rows of a field, each with `width` numbers; `vector_at` takes a row.
+template <class Real, class VectorAt>
+void by_grain(const Real* rows, std::size_t width, const std::vector<int>& order, std::vector<Vec3>& vectors,
+              VectorAt vector_at) {
+    vectors.resize(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) vectors[order[k]] = vector_at(rows + width * k);
 }
 
-/// Rotations from their quaternions.
-std::vector<Vec3> rotations(const std::vector<double>& tracks, const std::vector<int>& order) {
-    std::vector<Vec3> vectors(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        const Eigen::AngleAxisd turn{Eigen::Quaterniond{&tracks[reals_of_track * k + 4]}};
-        vectors[order[k]] = turn.angle() * turn.axis();
-    }
-    return vectors;
+template <class Real>
+Vec3 first_three(const Real* row) {
+    return {row[0], row[1], row[2]};
+}
+
+/// Rotation from its quaternion.
+template <class Real>
+Vec3 rotation(const Real* track) {
+    const Eigen::AngleAxisd turn{Eigen::Quaterniond(track[7], track[4], track[5], track[6])};
+    return turn.angle() * turn.axis();
+}
+
+template <class Real>
+const Real* numbers(const std::vector<std::byte>& bytes, std::size_t first) {
+    return reinterpret_cast<const Real*>(bytes.data()) + first;
 }
 
 int number_at(const std::byte* bytes, std::size_t index) {
@@ -143,40 +149,52 @@ std::vector<Readings> Engine::begin_reading(const std::vector<int>& replicas) co
 }
 
 void Engine::for_each_state(const std::vector<Readings>& read,
-                            const std::function<void(std::size_t, ReplicaState)>& use) const {
+                            const std::function<void(std::size_t, int replica, const Readings&)>& use) const {
     std::vector<std::pair<int, const Readings*>> states;
     for (const Readings& some : read) {
         some.copies.wait();
         for (int r = some.first_replica; r <= some.last_replica; ++r) states.emplace_back(r, &some);
     }
-    in_parallel(states.size(), [&](std::size_t i) { use(i, state(states[i].first, *states[i].second)); });
+    in_parallel(states.size(), [&](std::size_t i) { use(i, states[i].first, *states[i].second); });
 }
 
 ReplicaState Engine::state(int replica) const {
     const Readings read = begin_reading(replica, replica);
     read.copies.wait();
-    return state(replica, read);
-}
-
-ReplicaState Engine::state(int replica, const Readings& read) const {
-    const auto& order = layout_.order[replica];
-    const auto first = static_cast<std::size_t>(layout_.first_grain[replica]) - read.first_grain;
-    const auto motion = reals(read.motion, reals_of_motion * first, reals_of_motion * order.size());
-    ReplicaState state;
-    state.position = by_grain(motion, 0, order);
-    if (is_cell(replicas_[replica].box))
-        for (Vec3& x : state.position) x = deformation(run(replica).strain) * x;
-    state.velocity = by_grain(motion, 4, order);
-    state.angular_velocity = by_grain(motion, 8, order);
-    state.rotation =
-        rotations(reals(read.tracks, reals_of_track * first, reals_of_track * order.size()), order);
-    state.contacts = contacts(replica, state.position, read);
+    Scan scan;
+    take_state(replica, read, scan);
+    ReplicaState state{std::move(scan.position), {}, {}, std::move(scan.rotation), std::move(scan.contacts)};
+    const auto motion = reals(read.motion, 0, reals_of_motion * layout_.order[replica].size());
+    by_grain(&motion[4], reals_of_motion, layout_.order[replica], state.velocity, first_three<double>);
+    by_grain(&motion[8], reals_of_motion, layout_.order[replica], state.angular_velocity,
+             first_three<double>);
     return state;
 }
 
-/// Unit vector from the centre of a grain to its partner, a number as in the field Partner.
-Vec3 Engine::direction(int replica, const std::vector<Vec3>& position, int grain, int partner) const {
-    const Box box = deformed(true_box(replicas_[replica]), run(replica).strain);
+void Engine::take_state(int replica, const Readings& read, Scan& scan) const {
+    if (build_.precision == Precision::double_precision)
+        take_state_of<double>(replica, read, scan);
+    else
+        take_state_of<float>(replica, read, scan);
+}
+
+template <class Real>
+void Engine::take_state_of(int replica, const Readings& read, Scan& scan) const {
+    const auto& order = layout_.order[replica];
+    const auto first = static_cast<std::size_t>(layout_.first_grain[replica]) - read.first_grain;
+    by_grain(numbers<Real>(read.motion, reals_of_motion * first), reals_of_motion, order, scan.position,
+             first_three<Real>);
+    if (is_cell(replicas_[replica].box))
+        for (Vec3& x : scan.position) x = deformation(run(replica).strain) * x;
+    by_grain(numbers<Real>(read.tracks, reals_of_track * first), reals_of_track, order, scan.rotation,
+             rotation<Real>);
+    take_contacts<Real>(replica, read, scan);
+}
+
+/// Unit vector from the centre of a grain to its partner, a number as in the field Partner, in the deformed
+/// box.
+Vec3 Engine::direction(int replica, const Box& box, const std::vector<Vec3>& position, int grain,
+                       int partner) const {
     if (partner >= 0) {
         const int other = layout_.order[replica][partner - layout_.first_grain[replica]];
         return apart(box, position[grain], position[other]).normalized();
@@ -189,43 +207,45 @@ Vec3 Engine::direction(int replica, const std::vector<Vec3>& position, int grain
     return (wall % 2 ? 1 : -1) * Vec3::Unit(wall / 2);
 }
 
-std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& position,
-                                      const Readings& read) const {
+/// In ascending order of grains and partners.
+template <class Real>
+void Engine::take_contacts(int replica, const Readings& read, Scan& scan) const {
     const auto& order = layout_.order[replica];
-    const auto slots = static_cast<std::size_t>(build_.slots);
-    const auto padded =
-        static_cast<std::size_t>(layout_.first_grain[replica + 1] - layout_.first_grain[replica]);
-    const std::size_t first =
-        (static_cast<std::size_t>(layout_.first_grain[replica]) - read.first_grain) * slots;
-    const std::size_t count = padded * slots;
-    const auto force = reals(read.force, 3 * first, 3 * count), overlap = reals(read.overlap, first, count),
-               arm = reals(read.arm, first, count);
-    const std::size_t row = build_.lanes * slots;  // length of a row of forces, see kernels/measure.cl
-    const int* const partner = reinterpret_cast<const int*>(read.partner.data()) + first;
+    const auto& place = layout_.place[replica];
+    const auto slots = static_cast<std::size_t>(build_.slots), row = build_.lanes * slots;
+    const int first_grain = layout_.first_grain[replica];
+    const auto first = (static_cast<std::size_t>(first_grain) - read.first_grain) * slots;
+    const Real *const force = numbers<Real>(read.force, 3 * first),
+                      *const overlap = numbers<Real>(read.overlap, first),
+                      *const arm = numbers<Real>(read.arm, first);
+    const int* const partners = numbers<int>(read.partner, first);
     const PlateFace plate = plate_face(replicas_[replica], run(replica).plate_z);
-    std::vector<Contact> found;
-    for (std::size_t slot = 0; slot < count; ++slot) {
-        if (!(overlap[slot] > 0)) continue;
-        Contact contact;
-        contact.grain = order[build_.grain_of_slot(slot)];
-        if (partner[slot] < NO_PARTNER) {
-            contact.partner = wall_partner(static_cast<Wall>(WALL_PARTNER(0) - partner[slot]));
-        } else {
-            contact.partner = order[partner[slot] - layout_.first_grain[replica]];
-            if (contact.partner < contact.grain) continue;  // listed by the other grain
+    const Box box = deformed(true_box(replicas_[replica]), run(replica).strain);
+    std::array<std::pair<int, std::size_t>, most_slots> touching;  // partner and its slot
+    scan.contacts.clear();
+    for (int grain = 0; grain < static_cast<int>(order.size()); ++grain) {
+        auto end = touching.begin();
+        for (std::size_t k = 0; k < slots; ++k) {
+            const std::size_t slot = build_.place_of_slot(static_cast<std::size_t>(place[grain]), k);
+            if (!(overlap[slot] > 0)) continue;
+            const int partner = partners[slot] < NO_PARTNER
+                                    ? wall_partner(static_cast<Wall>(WALL_PARTNER(0) - partners[slot]))
+                                    : order[partners[slot] - first_grain];
+            if (is_wall(partner) || partner > grain) *end++ = {partner, slot};  // or the other grain lists it
         }
-        contact.point =
-            position[contact.grain] + arm[slot] * direction(replica, position, contact.grain, partner[slot]);
-        if (contact.partner == wall_partner(Wall::plate)) contact.point = plate.foot(position[contact.grain]);
-        const double* const along_x = &force[slot / row * 3 * row + slot % row];
-        contact.force = {along_x[0], along_x[row], along_x[2 * row]};
-        contact.overlap = overlap[slot];
-        found.push_back(contact);
+        std::sort(touching.begin(), end);
+        for (auto next = touching.begin(); next != end; ++next) {
+            const auto [partner, slot] = *next;
+            const Real* const along_x = &force[slot / row * 3 * row + slot % row];  // kernels/measure.cl
+            const Vec3& centre = scan.position[grain];
+            const Vec3 point = partner == wall_partner(Wall::plate)
+                                   ? plate.foot(centre)
+                                   : Vec3(centre + arm[slot] * direction(replica, box, scan.position, grain,
+                                                                         partners[slot]));
+            scan.contacts.push_back(
+                {grain, partner, point, {along_x[0], along_x[row], along_x[2 * row]}, overlap[slot]});
+        }
     }
-    std::sort(found.begin(), found.end(), [](const Contact& a, const Contact& b) {
-        return a.grain != b.grain ? a.grain < b.grain : a.partner < b.partner;
-    });
-    return found;
 }
 
 void Engine::set_velocities(int replica, const std::vector<Vec3>& velocity,

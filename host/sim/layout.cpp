@@ -62,6 +62,8 @@ Layout make_layout(const std::vector<Packing>& packings, int block) {
         layout.grain_count.push_back(count);
         layout.first_grain.push_back(layout.first_grain.back() + blocks * block);
         layout.order.push_back(spatial_order(packing));
+        layout.place.emplace_back(count);
+        for (int k = 0; k < count; ++k) layout.place.back()[layout.order.back()[k]] = k;
     }
     return layout;
 }

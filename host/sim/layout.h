@@ -14,6 +14,7 @@ struct Layout {
     std::vector<int> first_grain;         ///< of each replica, plus the end of the last one
     std::vector<int> grain_count;         ///< of each replica
     std::vector<std::vector<int>> order;  ///< replica, position in the array -> the user's grain number
+    std::vector<std::vector<int>> place;  ///< the inverse
 
     int replicas() const { return static_cast<int>(grain_count.size()); }
     int grains() const { return first_grain.back(); }  ///< padded, all replicas

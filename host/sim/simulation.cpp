@@ -132,15 +132,15 @@ bool Simulation::take_note(int replica, const IntervalResult& result) {
 }
 
 void Simulation::pass_on(const ScanSink& on_scan, const FailureSink& on_failure) {
-    std::vector<Scan> scans = this->scans();
+    fill_scans();
     readings_.clear();
-    auto next = scans.begin();
+    auto next = scans_.begin();
     for (Outcome& outcome : std::exchange(outcomes_, {})) {
         const int r = outcome.replica;
         if (outcome.scan) {
             const std::string beyond = beyond_law(scene_.replicas[r], *next);
             if (!beyond.empty()) outcome.failure = Failure{runners_[r].state().step, -1, beyond};
-            on_scan(r, std::move(*next++));
+            on_scan(r, *next++);
         }
         if (!outcome.failure) continue;
         on_failure(r, *outcome.failure);
@@ -148,20 +148,18 @@ void Simulation::pass_on(const ScanSink& on_scan, const FailureSink& on_failure)
     }
 }
 
-std::vector<Scan> Simulation::scans() const {
+void Simulation::fill_scans() {
     std::vector<const Outcome*> with_scan;
     for (const Outcome& outcome : outcomes_)
         if (outcome.scan) with_scan.push_back(&outcome);
-    std::vector<Scan> scans(with_scan.size());
-    engine_.for_each_state(readings_, [&](std::size_t i, ReplicaState state) {
-        scans[i] = scan(*with_scan[i], std::move(state));
+    scans_.resize(std::max(scans_.size(), with_scan.size()));
+    engine_.for_each_state(readings_, [&](std::size_t i, int, const Readings& read) {
+        fill_scan(*with_scan[i], read, scans_[i]);
     });
-    return scans;
 }
 
-Scan Simulation::scan(const Outcome& outcome, ReplicaState state) const {
+void Simulation::fill_scan(const Outcome& outcome, const Readings& read, Scan& scan) const {
     const auto& [replica, result, energy, tag, _] = outcome;
-    Scan scan;
     scan.frame = tag->frame;
     scan.cycle = tag->cycle;
     scan.phase = tag->phase;
@@ -180,14 +178,11 @@ Scan Simulation::scan(const Outcome& outcome, ReplicaState state) const {
     scan.friction_loss = energy.friction_loss;
     scan.drag_loss = energy.drag_loss;
     scan.energy_error = energy.energy_error;
-    scan.position = std::move(state.position);
-    scan.rotation = std::move(state.rotation);
-    scan.contacts = std::move(state.contacts);
+    engine_.take_state(replica, read, scan);
     if (is_cell(spec.box)) bring_into_cell(deformed(spec.box, scan.strain), scan);
     fill_averages(scan, spec.box, diameter_[replica], spec.protocol.force_threshold);
     if (!scene_.output.positions) scan.position.clear(), scan.rotation.clear();
     if (!scene_.output.contacts) scan.contacts.clear();
-    return scan;
 }
 
 Failure Simulation::failure(int replica, const IntervalResult& result, bool relaxes) const {

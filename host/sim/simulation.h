@@ -19,7 +19,8 @@ public:
     /// `packings[r]` is the initial packing of `scene.replicas[r]`.
     Simulation(Device& device, const Scene& scene, std::vector<Packing> packings);
 
-    using ScanSink = std::function<void(int replica, Scan scan)>;
+    /// May move from the scan.
+    using ScanSink = std::function<void(int replica, Scan& scan)>;
     using FailureSink = std::function<void(int replica, const Failure& failure)>;
 
     /// Runs one interval of every unfinished replica. While the device works on it, the scans and failures of
@@ -52,9 +53,9 @@ private:
     std::vector<StepInterval> next_intervals();
     /// Adds to `outcomes_` if there is something to pass on. Returns whether a scan is due.
     bool take_note(int replica, const IntervalResult& result);
-    /// The scans among `outcomes_`, in their order.
-    std::vector<Scan> scans() const;
-    Scan scan(const Outcome& outcome, ReplicaState state) const;
+    /// Computes the scans among `outcomes_`, in their order.
+    void fill_scans();
+    void fill_scan(const Outcome& outcome, const Readings& read, Scan& scan) const;
     Failure failure(int replica, const IntervalResult& result, bool relaxes) const;
 
     Scene scene_;
@@ -66,6 +67,7 @@ private:
     std::vector<EnergyBudget> budgets_;
     std::vector<Outcome> outcomes_;   ///< not passed on yet
     std::vector<Readings> readings_;  ///< the states for the scans among them
+    std::vector<Scan> scans_;         ///< these scans, in memory that is used again
     long grain_steps_ = 0;
 };
 
