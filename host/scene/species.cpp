@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "scene/scene.h"
 
@@ -33,6 +34,18 @@ GrainMaterial stiffest(const Replica& replica) {
 
 GrainMaterial softest(const Replica& replica) {
     return std::ranges::min(materials(replica), {}, plane_modulus);
+}
+
+double rayleigh_speed(const GrainMaterial& g) {
+    const double shear_modulus = g.youngs_modulus / (2 * (1 + g.poisson_ratio));
+    return std::sqrt(shear_modulus / g.density) * (0.163 * g.poisson_ratio + 0.8766);
+}
+
+double rayleigh_time(const Replica& replica, double radius) {
+    double fastest = 0;
+    for (const GrainMaterial& material : materials(replica))
+        fastest = std::max(fastest, rayleigh_speed(material));
+    return std::numbers::pi * radius / fastest;
 }
 
 PairLaw pair_law(const Replica& replica, std::size_t first, std::size_t second) {

@@ -64,6 +64,13 @@ constexpr double plane_modulus(const GrainMaterial& material) {
     return material.youngs_modulus / (1 - material.poisson_ratio * material.poisson_ratio);
 }
 
+/// Speed of Rayleigh waves, sqrt(G / rho) (0.163 nu + 0.8766) [m/s].
+double rayleigh_speed(const GrainMaterial& material);
+
+/// The shortest time in which such a wave crosses half the circumference of a grain of this radius [m],
+/// pi R / rayleigh_speed, of all materials [s].
+double rayleigh_time(const Replica& replica, double radius);
+
 /// mu and e of a contact.
 struct PairLaw {
     double friction, restitution;

@@ -8,10 +8,10 @@
 
 #include "core/container.h"
 #include "core/errors.h"
-#include "scene/programme/cell_path.h"
 #include "scene/programme/legs.h"
 #include "sim/device_material.h"
 #include "sim/device_replica.h"
+#include "sim/expected_run.h"
 #include "sim/layout.h"
 
 namespace mcdem::inline sim {
@@ -114,15 +114,6 @@ void expect_within_limits(const DeviceInfo& device, const KernelBuild& build,
 
 namespace {
 
-/// Largest change of a strain in a move of the cell.
-double max_strain_of_move(const Replica& replica) {
-    double low = 0, high = 0;
-    for (const Stage& stage : replica.programme)
-        for (const double strain : strain_after(stage, {}))
-            low = std::min(low, strain), high = std::max(high, strain);
-    return high - low;
-}
-
 /// The fastest strain rate must change the shape of the cell only little per step.
 void expect_slow_strains(const Replica& replica, double time_step) {
     constexpr double most = 0.01;  // strain per step
@@ -133,17 +124,6 @@ void expect_slow_strains(const Replica& replica, double time_step) {
                 fmt::format("programme.{}.rate must leave strains of at most {} in a time step of {:.3g} "
                             "s, got {} 1/s: at most {:.3g} 1/s",
                             n + 1, most, time_step, stage.rate, most / time_step));
-}
-
-/// Estimated duration of a stage's moves and holds each time it runs [s].
-double seconds_of_stage(const Stage& stage, const Replica& replica) {
-    const double speed = std::isnan(stage.speed) ? replica.plate.speed : stage.speed;
-    if (stage.kind == StageKind::hold) return stage.time;
-    if (is_cell(replica.box))
-        return (sets_stress(stage) ? std::max(1.0, max_strain_of_move(replica))
-                                   : max_strain_of_move(replica)) /
-               stage.rate;
-    return std::abs(replica.plate.start - replica.plate.end) / speed;
 }
 
 }  // namespace

@@ -83,11 +83,6 @@ Material device_material(const Replica& replica, const std::vector<GrainMaterial
 
 }  // namespace
 
-double rayleigh_speed(const GrainMaterial& g) {
-    return std::sqrt(shear_modulus(g.youngs_modulus, g.poisson_ratio) / g.density) *
-           (0.163 * g.poisson_ratio + 0.8766);
-}
-
 double damping_factor(double restitution) {
     const double log_e = std::log(restitution);
     return 2 * std::sqrt(5.0 / 6.0) * -log_e / std::sqrt(log_e * log_e + pi * pi);

@@ -7,9 +7,6 @@
 
 namespace mcdem::inline sim {
 
-/// Speed of Rayleigh waves, sqrt(G / rho) (0.163 nu + 0.8766) [m/s].
-double rayleigh_speed(const GrainMaterial& material);
-
 /// 2 sqrt(5/6) beta with beta = -ln e / sqrt(ln^2 e + pi^2), which gives a constant restitution for Hertz
 /// contacts.
 double damping_factor(double restitution);

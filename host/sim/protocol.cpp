@@ -36,6 +36,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::on_interval_done(const In
     const bool in_time = state().activity_step < programme_.max_standing_steps();
     if (in_time && (!still || programme_.pauses())) return std::nullopt;
     if (state().activity == Activity::settle) return arrive(still);
+    programme_.state.relax_steps = state().step;
     begin_leg();
     if (!programme_.protocol.scan_at_start) return std::nullopt;
     return tag(0, still);
@@ -120,20 +121,25 @@ void ProtocolRunner::next_leg() {
     begin_leg();
 }
 
+/// In steps: those of the relaxation, at most or as it took, and those that are expected of the programme.
 double ProtocolRunner::progress() const {
     if (finished()) return 1;
-    double part = 0;
-    if (state().activity == Activity::hold)
-        part = (state().time - state().hold_begin) / programme_.stage().time;
-    else if (state().activity != Activity::relax)
-        part = motion().progress(programme_);
-    return (state().leg + 0.95 * std::clamp(part, 0.0, 1.0)) / static_cast<double>(programme_.legs.size());
+    const auto& [relax, programme, lowest, force] = programme_.expected;
+    if (state().activity == Activity::relax)
+        return std::min(1.0, static_cast<double>(state().step) / (relax + programme));
+    const double part = state().activity == Activity::hold
+                            ? (state().time - state().hold_begin) / programme_.stage().time
+                            : motion().progress(programme_);
+    const double done =
+        (state().leg + 0.95 * std::clamp(part, 0.0, 1.0)) / static_cast<double>(programme_.legs.size());
+    const auto relaxed = static_cast<double>(state().relax_steps);
+    return (relaxed + done * programme) / (relaxed + programme);
 }
 
 bool ProtocolRunner::is_possible(const ProtocolState& state) const {
     const int activity = static_cast<int>(state.activity), phase = static_cast<int>(state.phase);
     if (state.leg < 0 || state.leg >= static_cast<int>(programme_.legs.size())) return false;
-    return state.step >= 0 && state.activity_step >= 0 && activity >= 0 &&
+    return state.step >= 0 && state.relax_steps >= 0 && state.activity_step >= 0 && activity >= 0 &&
            activity <= static_cast<int>(Activity::finished) && state.cycle >= 0 &&
            (phase == 0 || phase == 1) && state.level >= 0 &&
            state.level <= scans_of(programme_.stage_of(state.leg)) && state.frame >= 0 &&

@@ -30,6 +30,7 @@ RunningProgramme::RunningProgramme(const Replica& replica, double time_step, con
       clearance(scale.weight > 0 ? free_distance * scale.diameter : HUGE_VAL),
       time_step(time_step),
       max_time_step(time_step),
+      expected(expected_run(replica, scale, time_step)),
       quasi_static(replica, scale) {
     const auto lists = [](const Stage& stage) { return !stage.scan_at.empty(); };
     if (is_cell && std::ranges::any_of(stages, lists)) quantities = scan_quantities(stages, legs);

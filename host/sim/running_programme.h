@@ -11,8 +11,8 @@
 #include "scene/programme/legs.h"
 #include "scene/programme/scan_quantity.h"
 #include "sim/cell_control.h"
+#include "sim/expected_run.h"
 #include "sim/force_control.h"
-#include "sim/quasi_static.h"
 
 namespace mcdem::inline sim {
 
@@ -20,6 +20,7 @@ namespace mcdem::inline sim {
 struct ProtocolState {
     long step = 0;           ///< since the start
     long activity_step = 0;  ///< since the start of this activity
+    long relax_steps = 0;    ///< of the relaxation that is done
     enum class Activity : int { relax, move, settle, hold, finished };
     Activity activity = Activity::relax;
     int cycle = 0;
@@ -41,7 +42,7 @@ struct ProtocolState {
     CellControl::State cell;
 };
 static_assert(std::is_trivially_copyable_v<ProtocolState> &&
-                  sizeof(ProtocolState) == 8 * (2 + 4 + 9 + 3 + 7 + 36),
+                  sizeof(ProtocolState) == 8 * (3 + 4 + 9 + 3 + 7 + 36),
               "no padding: equal states have equal bytes in checkpoints");
 using Activity = ProtocolState::Activity;
 
@@ -110,6 +111,7 @@ struct RunningProgramme {
     double clearance;      ///< of a plate above grains at rest; grains without weight may be anywhere [m]
     double time_step;      ///< current one [s]
     double max_time_step;  ///< without shortening [s]
+    ExpectedRun expected;
     QuasiStatic quasi_static;
     ProtocolState state;
     std::string hindrance;  ///< why the programme could not continue in the last interval

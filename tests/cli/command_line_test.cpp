@@ -80,6 +80,15 @@ TEST_F(CliTest, ValidateSummarisesTheRun) {
                 HasSubstr("small.toml: valid scene\n40 replicas of 30 grains, float precision"));
     EXPECT_THAT(validated.out, HasSubstr("\n  independent #1\n"));
     EXPECT_THAT(validated.out, HasSubstr("and 28 more"));
+    EXPECT_THAT(validated.out,
+                testing::ContainsRegex("the packing is 0.0[0-9]+ m high when generated; the plate "
+                                       "starts at 0.[0-9]+ m, and at 0.[0-9]+ m finds "));
+    EXPECT_THAT(validated.out, testing::ContainsRegex("about .* grain-steps, .* (usual for such a device"));
+    const auto measured = mcdem({"validate", "small.toml", "--estimate"});
+    expect_done(measured);
+    EXPECT_THAT(measured.out, HasSubstr(" million per second (measured now)"));
+    const auto slow = mcdem({"validate", "small.toml", "--set", "plate.speed=1e-7"});
+    EXPECT_THAT(slow.err, testing::ContainsRegex("the run may take [0-9]+ h"));
 }
 
 TEST_F(CliTest, ARunThatExceedsTheDeviceIsRefusedBeforeItStarts) {

@@ -61,6 +61,16 @@ TEST_F(ProgressTest, TimeLeftOfAResumedRunCountsFromItsStart) {
     EXPECT_EQ(text(), "mcdem: 60 % done, 40 s left\n");
 }
 
+TEST_F(ProgressTest, TimeLeftOfALongRunIsToldAfterTwentySeconds) {
+    Progress progress = make(ProgressStyle::lines);
+    progress.show(0);
+    now_ += milliseconds(15'000);
+    progress.show(0.0015);
+    now_ += milliseconds(15'000);
+    progress.show(0.003);
+    EXPECT_EQ(text(), "mcdem: 0 % done\nmcdem: 0 % done, 2 h 46 min left\n");
+}
+
 TEST_F(ProgressTest, BarIsRedrawnAndRemoved) {
     {
         Progress progress = make(ProgressStyle::bar);

@@ -42,7 +42,7 @@ const std::string in_cell =
     "0.01\n";
 const std::string in_periodic =
     "[container]\nshape = \"periodic\"\nsize_x = 0.06\nsize_y = 0.06\n[plate]\nstart = 0.06\nend = 0.055\n";
-const std::string in_box = "[box]\nsize_x = 0.06\nsize_y = 0.06\n[plate]\nstart = 0.06\nend = 0.055\n";
+const std::string in_box = "[box]\nsize_x = 0.06\nsize_y = 0.06\n[plate]\nstart = 0.06\nend = 0.03\n";
 
 class PackingBox : public testing::Test {
 protected:
@@ -271,7 +271,7 @@ TEST_F(PackingBox, SlotsFollowTheNeighbours) {
 TEST_F(PackingBox, SlotsOfGeneratedGrainsFollowTheirSizes) {
     const auto generated = [](const std::string& sizes) {
         return parse_scene(
-            "[box]\nsize_x = 0.1\nsize_y = 0.1\n[plate]\nstart = 1\nend = 0.9\n[packing]\n" + sizes,
+            "[box]\nsize_x = 0.1\nsize_y = 0.1\n[plate]\nstart = 1\nend = 0.05\n[packing]\n" + sizes,
             "s.toml");
     };
     EXPECT_EQ(generated("count = 300\n").slots, 16);

@@ -66,7 +66,7 @@ void Progress::show(double fraction) {
 /// Estimate from the speed since the start; empty while it is too uncertain.
 std::string Progress::time_left(double fraction) const {
     const double done = fraction - first_->fraction, seconds = seconds_since(*first_);
-    if (done < 0.005 || seconds < 1) return "";
+    if (done <= 0 || seconds < (done < 0.005 ? 20 : 1)) return "";
     return ", " + duration_text(seconds * (1 - fraction) / done) + " left";
 }
 

@@ -37,7 +37,7 @@ Population population(const GeneratedPacking& wanted, const Mixture& mixture) {
 }
 
 /// Draws the sizes of each species, in random order.
-void draw_grains(Packing& packing, const Population& population, std::uint64_t seed) {
+void draw_sizes(Packing& packing, const Population& population, std::uint64_t seed) {
     Random random(seed, Stream::diameters);
     std::vector<std::pair<double, int>> grains;
     for (std::size_t s = 0; s < population.sizes.size(); ++s)
@@ -92,18 +92,24 @@ double expected_height(const GeneratedPacking& wanted, const Box& box, const Mix
     return height_for(grain_volume, wanted.packing_fraction, box);
 }
 
+DrawnGrains draw_grains(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed,
+                        const Mixture& mixture) {
+    DrawnGrains drawn;
+    draw_sizes(drawn.packing, population(wanted, mixture), seed);
+    if (mixture.species.empty()) drawn.packing.species.clear();
+    double grain_volume = 0;
+    for (double d : drawn.packing.diameter) grain_volume += volume(d);
+    drawn.height = is_cell(box) ? box.height : height_for(grain_volume, wanted.packing_fraction, box);
+    return drawn;
+}
+
 Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed,
                          const Mixture& mixture) {
     // Slow growth lets grains rearrange; more stages or iterations change little.
     constexpr int stages = 10, iterations_of_stage = 200, last_iterations = 3000;
     constexpr double smallest_scale = 0.7;
 
-    Packing packing;
-    draw_grains(packing, population(wanted, mixture), seed);
-    if (mixture.species.empty()) packing.species.clear();
-    double grain_volume = 0;
-    for (double d : packing.diameter) grain_volume += volume(d);
-    const double height = is_cell(box) ? box.height : height_for(grain_volume, wanted.packing_fraction, box);
+    auto [packing, height] = draw_grains(wanted, box, seed, mixture);
     packing.position = draw_positions(wanted, box, height, seed);
 
     OverlapRelaxation relaxation(packing, box, height);

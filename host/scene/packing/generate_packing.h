@@ -27,6 +27,14 @@ inline Mixture mixture_of(const Replica& replica) { return {replica.species, rep
 Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed,
                          const Mixture& mixture = {});
 
+/// The grains of such a packing, not yet placed, and the height that they will fill [m].
+struct DrawnGrains {
+    Packing packing;
+    double height = 0;
+};
+DrawnGrains draw_grains(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed,
+                        const Mixture& mixture = {});
+
 /// Height of the box that `generate_packing` would fill with sizes exactly as distributed [m].
 double expected_height(const GeneratedPacking& wanted, const Box& box, const Mixture& mixture = {});
 

@@ -13,8 +13,11 @@ namespace mcdem::inline scene {
 
 /// Everything that keys can set, before copies are made: the run, and one replica.
 struct Settings {
-    Settings() { run.slots = 0; }
-    Scene run;  ///< its slots are 0 until they are known
+    Settings() {
+        run.slots = 0;
+        replica.protocol.relax_time = replica.protocol.settle_time = not_given;
+    }
+    Scene run;  ///< its slots are 0 until they are known; the times of its replicas likewise not_given
     Replica replica;
     GeneratedPacking generated;
     std::string packing_file;  ///< empty: generated

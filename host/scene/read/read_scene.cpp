@@ -216,8 +216,8 @@ private:
         std::size_t grains = 1;
         combinations_ = combinations(settings_, variations_);
         const std::set<std::string> said_keys = said();
-        for (const Combination& combination : combinations_) {
-            const Settings& settings = combination.settings;
+        for (Combination& combination : combinations_) {
+            Settings& settings = combination.settings;
             for (const CrossProblem& problem : cross_problems(settings, bad_)) {
                 const std::string key = given_name(problem.key);
                 problems_.add(document_.place_of(key), fmt::format("{} {}", key, problem.what));
@@ -236,7 +236,9 @@ private:
                     "batch.replicas must be 1 where packing.file is given without packing.position_jitter: "
                     "all copies would be identical");
             if (problems_.empty()) slots_ = std::max(slots_, slots_needed(settings, files));
-            grains = std::max(grains, grain_count(settings, files));
+            const GrainsOfReplica known = grains_of(settings, files);
+            set_times(settings, known.smallest);
+            grains = std::max(grains, known.count);
             if (static_cast<double>(grains * combinations_.size()) > max_grains) break;
         }
         check_size(static_cast<double>(grains));

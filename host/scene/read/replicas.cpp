@@ -87,6 +87,18 @@ std::vector<Combination> combinations(const Settings& base, const std::vector<Va
     return all;
 }
 
+/// Soft grains of some millimetres take the upper limits. Stiff or small ones come to rest in microseconds: a
+/// maximum of a second would be millions of steps, which packings that creep would all make. In units of
+/// their Rayleigh time all grains relax alike: packings of `scenes/` rest after 200 to 900 of them.
+void set_times(Settings& settings, double smallest_diameter) {
+    constexpr double relax = 1, settle = 0.5;  // [s]
+    constexpr double relax_in_own_times = 2000, settle_in_own_times = 1000;
+    const double own = rayleigh_time(settings.replica, smallest_diameter / 2);
+    Protocol& protocol = settings.replica.protocol;
+    if (std::isnan(protocol.relax_time)) protocol.relax_time = std::min(relax, relax_in_own_times * own);
+    if (std::isnan(protocol.settle_time)) protocol.settle_time = std::min(settle, settle_in_own_times * own);
+}
+
 std::vector<Replica> make_replicas(const std::vector<Combination>& combinations) {
     std::vector<Replica> replicas;
     for (const Combination& combination : combinations) {

@@ -31,6 +31,9 @@ double combination_count(const std::vector<Variation>& variations);
 /// All combinations; the first variation changes slowest.
 std::vector<Combination> combinations(const Settings& base, const std::vector<Variation>& variations);
 
+/// Times that the scene does not give follow from the grains, the smallest of which has this diameter [m].
+void set_times(Settings& settings, double smallest_diameter);
+
 /// The copies of every combination. Copy n has the same packing seed in all combinations, so that settings
 /// can be compared on equal packings.
 std::vector<Replica> make_replicas(const std::vector<Combination>& combinations);

@@ -379,10 +379,12 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
     return problems;
 }
 
-std::size_t grain_count(const Settings& settings, const CheckedFiles& files) {
-    if (settings.packing_file.empty()) return static_cast<std::size_t>(settings.generated.count);
+GrainsOfReplica grains_of(const Settings& settings, const CheckedFiles& files) {
+    if (settings.packing_file.empty())
+        return {static_cast<std::size_t>(settings.generated.count), settings.generated.diameter_min};
     const auto found = files.find({settings.packing_file, settings.packing_frame});
-    return found == files.end() ? 0 : found->second.count;
+    if (found == files.end()) return {};
+    return {found->second.count, found->second.smallest};
 }
 
 }  // namespace mcdem::scene

@@ -48,7 +48,11 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
 /// checked.
 int slots_needed(const Settings& settings, CheckedFiles& files);
 
-/// Number of grains of one replica.
-std::size_t grain_count(const Settings& settings, const CheckedFiles& files);
+/// Number of grains of one replica, and the smallest diameter that they can have [m].
+struct GrainsOfReplica {
+    std::size_t count = 0;
+    double smallest = 0;
+};
+GrainsOfReplica grains_of(const Settings& settings, const CheckedFiles& files);
 
 }  // namespace mcdem::scene

@@ -7,6 +7,8 @@
 #include <map>
 #include <optional>
 
+#include "core/container.h"
+#include "scene/packing/generate_packing.h"
 #include "scene/packing/neighbour_slots.h"
 #include "scene/packing/packing_state.h"
 #include "scene/packing/stated_box.h"
@@ -82,6 +84,21 @@ std::string too_unlike(const Replica& replica, const GeneratedPacking& grains) {
         grains.diameter_max, grains.diameter_mean, most, most_slots, widest_sizes);
 }
 
+/// A plate that never comes down to the grains; empty if it does.
+std::string misses_packing(const Replica& replica, double top) {
+    if (is_cell(replica.box) || replica.plate.end < top) return "";
+    return fmt::format(
+        "plate.end: the plate touches no grain: it stays above {:.6g} m, and the packing is {:.6g} m high",
+        replica.plate.end, top);
+}
+
+double top_of(const Packing& packing) {
+    double top = 0;
+    for (std::size_t i = 0; i < packing.size(); ++i)
+        top = std::max(top, packing.position[i].z() + packing.diameter[i] / 2);
+    return top;
+}
+
 }  // namespace
 
 std::vector<std::string> scene_warnings(const Scene& scene) {
@@ -92,8 +109,10 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
             warnings.push_back(warning);
     };
     for (const Replica& replica : scene.replicas) {
-        if (const auto* drawn = std::get_if<GeneratedPacking>(&replica.packing.source))
+        if (const auto* drawn = std::get_if<GeneratedPacking>(&replica.packing.source)) {
             add(too_unlike(replica, *drawn));
+            add(misses_packing(replica, expected_height(*drawn, replica.box, mixture_of(replica))));
+        }
         const auto* file = std::get_if<PackingFile>(&replica.packing.source);
         if (!file) continue;
         const auto [place, is_new] = files.try_emplace({file->path, file->step});
@@ -104,6 +123,7 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
         add(lost_history(replica, place->second, file->path));
         add(not_read(packing, file->path));
         add(not_distinguished(replica, packing, file->path));
+        add(misses_packing(replica, top_of(packing)));
     }
     return warnings;
 }

@@ -7,7 +7,7 @@
 
 namespace mcdem::inline scene {
 
-/// Warnings about the packing files of a scene that was read without problems; reads the files again.
+/// Warnings about the packings of a scene that was read without problems; reads their files again.
 std::vector<std::string> scene_warnings(const Scene& scene);
 
 }  // namespace mcdem::scene
