@@ -7,7 +7,7 @@
 
 #include "reference/test_scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 using mcdem::EnergyBudget;
@@ -185,4 +185,4 @@ TEST(EnergyBudget, ContactsWithoutAPotentialAreNotJudged) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference
