@@ -10,9 +10,11 @@ set(completion host/python/mcdem/commands/completion)
 install(FILES ${completion}.bash DESTINATION ${share}/bash-completion/completions RENAME mcdem COMPONENT program)
 install(FILES ${completion}.zsh DESTINATION ${share}/zsh/vendor-completions RENAME _mcdem COMPONENT program)
 install(FILES ${completion}.fish DESTINATION ${share}/fish/vendor_completions.d RENAME mcdem.fish COMPONENT program)
-install(DIRECTORY host/python/mcdem DESTINATION ${share}/mcdem/python COMPONENT program  # what commands run
-  FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "*.jinja" PATTERN "commands.txt" PATTERN "completion.*"
-  PATTERN __pycache__ EXCLUDE)
+if(NOT SKBUILD)
+  install(DIRECTORY host/python/mcdem DESTINATION ${share}/mcdem/python COMPONENT program  # what commands run
+    FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css" PATTERN "*.jinja" PATTERN "commands.txt" PATTERN "completion.*"
+    PATTERN __pycache__ EXCLUDE)
+endif()
 install(DIRECTORY scenes DESTINATION ${share}/mcdem COMPONENT program)
 
 # The engine: all floors below the command line and the Python module.

@@ -6,11 +6,11 @@
 
 #include <filesystem>
 
-namespace reference {
+namespace mcdem::reference {
 
 inline const std::filesystem::path authors_folder = std::filesystem::path(MCDEM_SHARED_DATA) / "hydrogel";
 
-}  // namespace reference
+}  // namespace mcdem::reference
 
 /// Skips a test if this file of the folder is missing. scripts/skipped recognises the reason by its first
 /// words.

@@ -8,6 +8,9 @@ foreach(line ${lines})
     set(suite ${CMAKE_MATCH_1})
     string(APPEND tests "add_test([=[${NAME}.${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n"
       "set_tests_properties([=[${NAME}.${suite}]=] PROPERTIES TIMEOUT 1800)\n")
+    if(NAME STREQUAL cli)
+      string(APPEND tests "set_tests_properties([=[${NAME}.${suite}]=] PROPERTIES FIXTURES_REQUIRED checked_device)\n")
+    endif()
     if(suite MATCHES "AuthorsPacking|RandomScenes|Diagnose[A-Za-z]*Test|ProgrammePartsTest|CliTest")  # long: these begin first
       string(APPEND tests "set_tests_properties([=[${NAME}.${suite}]=] PROPERTIES COST 200)\n")
     endif()

@@ -10,6 +10,7 @@
 
 #include "cl/held_signals.h"
 #include "cl/kernel_cache.h"
+#include "cl/pip_driver.h"
 #include "cl/profile.h"
 #include "core/stack.h"
 
@@ -40,6 +41,10 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device) {
     info.largest_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
     info.largest_work_group = static_cast<int>(device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>());
     return info;
+}
+
+bool is_pocl(const cl::Platform& platform) {
+    return platform.getInfo<CL_PLATFORM_NAME>().starts_with("Portable Computing Language");
 }
 
 /// Drivers have threads, which do not exist in a forked child: it would wait for them forever.
@@ -81,7 +86,12 @@ std::vector<Found> find_devices() {
     try {
         cl::Platform::get(&platforms);
     } catch (const cl::Error&) {
-        return found;  // the loader reports "no platform" as an error
+        platforms.clear();  // the loader reports "no platform" as an error
+    }
+    // The user's choice of drivers, and one PoCL in a process.
+    if (!std::getenv("OCL_ICD_VENDORS") && std::ranges::none_of(platforms, is_pocl)) {
+        static const std::vector<cl::Platform> from_pip = pip_platforms();
+        platforms.insert(platforms.end(), from_pip.begin(), from_pip.end());
     }
     for (const auto& platform : platforms) {
         std::vector<cl::Device> devices;
@@ -122,8 +132,9 @@ Found choose(const std::string& choice) {
 
 RunError no_device() {
     return RunError(
-        "no OpenCL device found: install a driver (the package pocl-opencl-icd runs on any CPU); if it "
-        "is there, set POCL_CACHE_DIR to a folder of your own where it can keep compiled kernels");
+        "no OpenCL device found: install a driver (the package pocl-opencl-icd runs on any CPU; with "
+        "pip, pocl-binary-distribution); if it is there, set POCL_CACHE_DIR to a folder of your own where it "
+        "can keep compiled kernels");
 }
 
 std::vector<DeviceInfo> list_devices() {

@@ -17,6 +17,11 @@ namespace fs = std::filesystem;
 constexpr mode_t by_others = 022, entry_of_others = 011;
 constexpr const char* nowhere = "/dev/null/no-folder-for-kernels";  ///< PoCL then offers no device
 
+fs::path variable(const char* name) {
+    const char* text = std::getenv(name);
+    return text ? text : "";
+}
+
 bool can_write_in(const fs::path& folder) {
     std::string probe = (folder / "mcdem-probe-XXXXXX").string();
     const int file = mkstemp(probe.data());
@@ -154,16 +159,17 @@ std::string why_open_to_others(const fs::path& folder) {
     }
 }
 
-fs::path wanted_kernel_cache() {
-    const auto value = [](const char* variable) -> fs::path {
-        const char* text = std::getenv(variable);
-        return text ? text : "";
-    };
-    if (const auto folder = value("POCL_CACHE_DIR"); !folder.empty()) return fs::absolute(folder);
-    if (const auto folder = value("XDG_CACHE_HOME"); folder.is_absolute()) return folder / "pocl/kcache";
+fs::path user_cache() {
+    if (const fs::path folder = variable("XDG_CACHE_HOME"); folder.is_absolute()) return folder;
     std::error_code missing;
-    const auto home = value("HOME");  // not made: users of services have one that does not exist
-    return home.is_absolute() && fs::is_directory(home, missing) ? home / ".cache/pocl/kcache" : fs::path();
+    const fs::path home = variable("HOME");  // not made: users of services have one that does not exist
+    return home.is_absolute() && fs::is_directory(home, missing) ? home / ".cache" : fs::path();
+}
+
+fs::path wanted_kernel_cache() {
+    if (const fs::path folder = variable("POCL_CACHE_DIR"); !folder.empty()) return fs::absolute(folder);
+    const fs::path cache = user_cache();
+    return cache.empty() ? cache : cache / "pocl/kcache";
 }
 
 void prepare_kernel_cache() {

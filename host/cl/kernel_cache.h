@@ -13,6 +13,9 @@ inline void (*opencl_started)() = [] {};
 /// could put code of theirs there.
 inline void (*kernel_cache_refused)(const std::string& why) = [](const std::string&) {};
 
+/// The folder of this user for what can be made again, by XDG_CACHE_HOME or HOME; empty if they name none.
+std::filesystem::path user_cache();
+
 /// PoCL's cache folder according to its environment variables POCL_CACHE_DIR, XDG_CACHE_HOME and HOME,
 /// absolute; empty if they name none.
 std::filesystem::path wanted_kernel_cache();

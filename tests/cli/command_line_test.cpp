@@ -1,4 +1,5 @@
 // Output and exit codes for help, versions and errors of the command line.
+#include "cl/kernel_cache.h"
 #include "cli/cli_test.h"
 #include "cli/shell/command_list.h"
 
@@ -121,6 +122,19 @@ TEST_F(CliTest, DevicesAreListedAndUnknownOnesRefused) {
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_THAT(run.err, testing::AllOf(HasSubstr("mcdem: --device: must be"), HasSubstr("'abacus'"),
                                         HasSubstr("mcdem:   0  ")));
+}
+
+TEST_F(CliTest, DevicesAreComparedWithTheHostAtTheirFirstUse) {
+    const std::vector<std::string> cache{"XDG_CACHE_HOME=" + path("cache").string(),
+                                         "POCL_CACHE_DIR=" + wanted_kernel_cache().string()};
+    const auto first = mcdem(run_words("a"), cache), second = mcdem(run_words("b"), cache);
+    expect_done(first);
+    EXPECT_THAT(first.err, HasSubstr("mcdem: first use of "));
+    EXPECT_THAT(second.err, testing::Not(HasSubstr("first use")));
+    const auto checked = mcdem({"devices", "--check"}, cache);
+    expect_done(checked);
+    EXPECT_THAT(checked.out, testing::AllOf(HasSubstr(" pass\n"), testing::Not(HasSubstr(" fail\n"))));
+    EXPECT_THAT(mcdem(run_words("c"), {"XDG_CACHE_HOME=/proc", cache[1]}).err, HasSubstr("first use of "));
 }
 
 TEST_F(CliTest, NoDeviceIsAFailure) {

@@ -31,6 +31,22 @@ TEST_F(KernelsFolderTest, FilesOfTheFolderAreCompiled) {
                 testing::AllOf(HasSubstr("the kernels do not compile"), HasSubstr("changed here")));
 }
 
+/// As if a driver compiled Hertz's law wrongly.
+TEST_F(KernelsFolderTest, WrongKernelsFailTheComparisonWithTheHost) {
+    fs::copy(sources_, path("kernels"));
+    std::string text = bytes_of_file(sources_ / "contact_forces.h");
+    const std::string right = "R(2) / R(3)";
+    text.replace(text.find(right), right.size(), "R(2) / R(2.999)");
+    std::ofstream(path("kernels/contact_forces.h")) << text;
+    const auto run = run_with_kernels("out", "kernels");
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_THAT(run.err, testing::AllOf(HasSubstr("computes wrong forces"), HasSubstr("--device")));
+    EXPECT_FALSE(fs::exists(path("out")));
+    const auto checked = mcdem({"devices", "--check"}, {"MCDEM_KERNELS=kernels"});
+    EXPECT_EQ(checked.exit_code, 1);
+    EXPECT_THAT(checked.out, testing::AllOf(HasSubstr(" fail\n"), testing::Not(HasSubstr(" pass\n"))));
+}
+
 TEST_F(KernelsFolderTest, MissingFolderIsBadInput) {
     expect_bad_input(run_with_kernels("out", "nowhere"), "got 'nowhere', where mcdem.cl cannot be read");
     fs::create_directory(path("kernels"));

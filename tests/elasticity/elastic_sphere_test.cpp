@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "elasticity/elastic_sphere_series.h"
-#include "reference/grain_reference.h"
 #include "reference/point_force_reference.h"
+#include "sim/reference/grain_reference.h"
 
 namespace mcdem {
 namespace {

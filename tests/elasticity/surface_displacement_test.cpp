@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "reference/grain_reference.h"
 #include "reference/point_force_reference.h"
+#include "sim/reference/grain_reference.h"
 
 namespace mcdem {
 namespace {

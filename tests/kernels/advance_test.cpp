@@ -3,7 +3,7 @@
 // layout.
 #include "kernels/steps_as_reference.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 /// A large probed gap gives grains 18 or more neighbours.
@@ -109,12 +109,12 @@ TEST(Step, ComparisonDetectsAWrongModulus) {
     same.step();
     other.step();
     const auto result = batch.advance(1).front();
-    EXPECT_LT(compare(batch.engine(), 0, result, same, 2e-5).worst(), 2e-5);
-    const Differences d = compare(batch.engine(), 0, result, other, 2e-5);
+    EXPECT_LT(compare(batch.engine().state(0), result, same, 2e-5).worst(), 2e-5);
+    const Differences d = compare(batch.engine().state(0), result, other, 2e-5);
     EXPECT_GT(d.force, 5e-4);
     EXPECT_GT(d.velocity, 2e-4);
     EXPECT_GT(d.wall_force, 5e-4);
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

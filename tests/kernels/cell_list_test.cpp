@@ -4,7 +4,7 @@
 #include "reference/test_scene.h"
 #include "sim/device_replica.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 /// Fields of a batch (float) with positions and replicas uploaded.
@@ -117,4 +117,4 @@ TEST(CellList, LeavesOtherReplicasAlone) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

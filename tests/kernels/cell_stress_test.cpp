@@ -1,7 +1,7 @@
 // Kernel cell_stress: the stress of a sheared cell, with contacts across its periodic boundaries.
 #include "kernels/test_kernel.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 constexpr int slots = 16;
@@ -78,4 +78,4 @@ TEST(CellStress, IsZeroInOtherContainers) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

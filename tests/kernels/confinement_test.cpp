@@ -1,10 +1,10 @@
 // Finite strain of a grain: work, pressure and deviator against the formulas in double precision, and the
 // surface displacements against the derivative of that work with respect to the forces.
 #include "kernels/test_kernel.h"
-#include "reference/grain_reference.h"
 #include "sim/device_replica.h"
+#include "sim/reference/grain_reference.h"
 
-namespace reference::finite_strain {
+namespace mcdem::reference::finite_strain {
 namespace {
 
 constexpr int slots = 16, read = 7, written = 4;
@@ -172,4 +172,4 @@ TEST(Confinement, PressureAndDeviatorOfForcesAlongAxes) {
 }
 
 }  // namespace
-}  // namespace reference::finite_strain
+}  // namespace mcdem::reference::finite_strain

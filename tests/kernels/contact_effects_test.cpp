@@ -3,7 +3,7 @@
 // layouts.
 #include "kernels/steps_as_reference.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 using mcdem::Effects;
@@ -108,10 +108,11 @@ TEST(EffectSteps, ComparisonDetectsEachMissingEffect) {
             }
             result = batch.advance(1).front();
         }
-        EXPECT_LT(compare(batch.engine(), 0, result, same, 5e-5).worst(), slack * 5e-5) << "effect " << k;
-        EXPECT_GT(compare(batch.engine(), 0, result, other, 5e-5).worst(), 1e-3) << "effect " << k;
+        EXPECT_LT(compare(batch.engine().state(0), result, same, 5e-5).worst(), slack * 5e-5)
+            << "effect " << k;
+        EXPECT_GT(compare(batch.engine().state(0), result, other, 5e-5).worst(), 1e-3) << "effect " << k;
     }
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -8,7 +8,7 @@
 #include "reference/test_scene.h"
 #include "sim/device_replica.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 using std::numbers::pi;
@@ -136,4 +136,4 @@ TEST(Collision, ErrorIsOfSecondOrderInTheTimeStep) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -1,7 +1,7 @@
 // Neighbours and walls in the slots of a grain, against geometry in double precision.
 #include "kernels/test_kernel.h"
 
-namespace reference::contact_geometry {
+namespace mcdem::reference::contact_geometry {
 namespace {
 
 constexpr int slots = 16, written = 10;  // direction, distance, radius, wall, velocity, occupied
@@ -134,4 +134,4 @@ TEST_P(ContactGeometry, IncludesTheMotionOfADeformedCell) {
 INSTANTIATE_TEST_SUITE_P(BothLayouts, ContactGeometry, testing::Bool());
 
 }  // namespace
-}  // namespace reference::contact_geometry
+}  // namespace mcdem::reference::contact_geometry

@@ -1,7 +1,7 @@
 // The memory of contacts is loaded as it was stored, in the rows that a replica needs.
 #include "kernels/test_kernel.h"
 
-namespace reference::contact_memory {
+namespace mcdem::reference::contact_memory {
 namespace {
 
 constexpr int rows = 9, slots = 16, grains = 48, first = 16, number = 16;
@@ -81,4 +81,4 @@ TEST(ContactMemory, KeepsTheRowsThatTheReplicaNeeds) {
 }
 
 }  // namespace
-}  // namespace reference::contact_memory
+}  // namespace mcdem::reference::contact_memory

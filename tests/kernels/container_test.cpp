@@ -1,7 +1,7 @@
 // Walls and periodic boundaries of the four containers, against geometry in double precision.
 #include "kernels/test_kernel.h"
 
-namespace reference::container {
+namespace mcdem::reference::container {
 namespace {
 
 using Matrix = Eigen::Matrix3d;
@@ -149,4 +149,4 @@ TEST(Container, PeriodicCoordinatesAreWrappedIntoTheCell) {
 }
 
 }  // namespace
-}  // namespace reference::container
+}  // namespace mcdem::reference::container

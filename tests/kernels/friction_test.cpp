@@ -6,7 +6,7 @@
 
 #include "reference/test_scene.h"
 
-namespace reference::friction {
+namespace mcdem::reference::friction {
 namespace {
 
 constexpr double radius = 0.01, friction = 0.2, youngs_modulus = 1e6, poisson_ratio = 0.3, gravity = 9.81;
@@ -76,4 +76,4 @@ TEST(Mindlin, CyclicShearFollowsTheHysteresisLoop) {
 }
 
 }  // namespace
-}  // namespace reference::friction
+}  // namespace mcdem::reference::friction

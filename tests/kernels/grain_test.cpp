@@ -4,7 +4,7 @@
 
 #include "kernels/test_kernel.h"
 
-namespace reference::grains {
+namespace mcdem::reference::grains {
 namespace {
 
 constexpr int slots = 16, grains = 64;
@@ -144,4 +144,4 @@ TEST(WaySinceListed, IsThatInTheDeformedCell) {
 }
 
 }  // namespace
-}  // namespace reference::grains
+}  // namespace mcdem::reference::grains

@@ -5,7 +5,7 @@
 #include "core/names.h"
 #include "reference/test_scene.h"
 
-namespace reference::integrate {
+namespace mcdem::reference::integrate {
 namespace {
 
 constexpr double radius = 0.01, gravity = 9.81;
@@ -146,4 +146,4 @@ TEST(Motion, RotationsAreAboutTheLaboratorysAxes) {
 }
 
 }  // namespace
-}  // namespace reference::integrate
+}  // namespace mcdem::reference::integrate

@@ -1,7 +1,7 @@
 // Operations on `lanes`: gather, scatter, selection, products.
 #include "kernels/test_kernel.h"
 
-namespace reference::lanes {
+namespace mcdem::reference::lanes {
 namespace {
 
 constexpr int numbers = 64, grains = 64;
@@ -125,4 +125,4 @@ TEST_P(Lanes, VectorProductsAgreeWithClosedForms) {
 INSTANTIATE_TEST_SUITE_P(BothLayouts, Lanes, testing::Bool());
 
 }  // namespace
-}  // namespace reference::lanes
+}  // namespace mcdem::reference::lanes

@@ -1,7 +1,7 @@
 // Kernel reduce: sums over the grains of a replica, for various numbers of grains and portions.
 #include "kernels/test_kernel.h"
 
-namespace reference::measure {
+namespace mcdem::reference::measure {
 namespace {
 
 constexpr int slots = 16;
@@ -85,4 +85,4 @@ TEST(Reduce, ReportsTheFirstFailedGrainAndAllStatusBits) {
 }
 
 }  // namespace
-}  // namespace reference::measure
+}  // namespace mcdem::reference::measure

@@ -1,7 +1,7 @@
 // State of grains: loading, selection and storing, in both layouts.
 #include "kernels/test_kernel.h"
 
-namespace reference::motions {
+namespace mcdem::reference::motions {
 namespace {
 
 constexpr int slots = 16, grains = 64, reals = 12;  ///< of a grain in the field Motion
@@ -67,4 +67,4 @@ TEST(MotionState, IsChosenGrainByGrain) {
 }
 
 }  // namespace
-}  // namespace reference::motions
+}  // namespace mcdem::reference::motions

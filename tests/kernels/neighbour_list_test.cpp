@@ -8,7 +8,7 @@
 #include "kernels/saved_rows.h"
 #include "sim/device_replica.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 /// Neighbours of a grain by a loop over all pairs. `unsure`: at the reach within rounding errors.
@@ -381,4 +381,4 @@ TEST(NeighbourList, MemoryMovesWithItsNeighbours) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

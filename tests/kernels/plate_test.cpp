@@ -1,7 +1,7 @@
 // Position of a tilted plate, against plane geometry in double precision.
 #include "kernels/test_kernel.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 TEST(Plate, FootAndDistanceAgreeWithPlaneGeometry) {
@@ -47,4 +47,4 @@ TEST(Plate, MovesAtItsVelocityAndIsLevelWithoutTheEffect) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -10,7 +10,7 @@
 #include "sim/device_types.h"
 #include "sim/layout.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 template <class T>
 std::vector<T> saved_values(const std::map<std::string, std::vector<std::byte>>& saved,
@@ -83,4 +83,4 @@ private:
     std::vector<int> partner_;
 };
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -8,7 +8,7 @@
 #include "reference/plates_reference.h"
 #include "reference/test_scene.h"
 
-namespace reference::between_plates {
+namespace mcdem::reference::between_plates {
 namespace {
 
 constexpr double radius = 0.01, youngs_modulus = 1e5;
@@ -96,4 +96,4 @@ TEST(Plates, EquatorTouchesTheSideWallsAtTheExpectedOverlap) {
 }
 
 }  // namespace
-}  // namespace reference::between_plates
+}  // namespace mcdem::reference::between_plates

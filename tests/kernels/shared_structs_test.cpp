@@ -3,7 +3,7 @@
 
 #include "kernels/test_kernel.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 /// Names of a struct's members, from the text of the kernels.
@@ -77,4 +77,4 @@ TEST(SharedStructs, HaveTheSameLayoutInDouble) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

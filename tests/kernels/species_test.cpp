@@ -5,7 +5,7 @@
 #include "sim/device_material.h"
 #include "sim/device_replica.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 using mcdem::GrainMaterial;
@@ -161,4 +161,4 @@ TEST(Species, PairConstantsHaveTheSameBitsFromBothSidesForTwoSpecies) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -3,9 +3,9 @@
 #include <Eigen/Eigenvalues>
 
 #include "kernels/test_kernel.h"
-#include "reference/grain_reference.h"
+#include "sim/reference/grain_reference.h"
 
-namespace reference::stable_step {
+namespace mcdem::reference::stable_step {
 namespace {
 
 /// Largest absolute eigenvalue of one step of a unit mass with a spring of unit stiffness, whose force is
@@ -157,4 +157,4 @@ TEST(StableStep, OfAGrainBetweenPlatesFollowsFromItsGain) {
 }
 
 }  // namespace
-}  // namespace reference::stable_step
+}  // namespace mcdem::reference::stable_step

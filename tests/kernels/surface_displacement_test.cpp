@@ -8,7 +8,7 @@
 #include "core/names.h"
 #include "kernels/saved_rows.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 /// Difference at all slots after six steps, which fill the history, over the largest displacement.
@@ -88,4 +88,4 @@ TEST(SurfaceDisplacement, EmptySlotsHaveNoEffect) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -6,7 +6,7 @@
 #include "reference/test_scene.h"
 #include "sim/device_types.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 /// `text` may use LANE(type, value, i): element i modulo LANES of a vector.
 inline cl::Program with_kernel(const std::string& text, const KernelBuild& kernels) {
@@ -113,4 +113,4 @@ inline std::vector<float> mapped_slots(const std::string& body, const mcdem::f32
                   slots * static_cast<std::size_t>(written));
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -2,7 +2,7 @@
 #pragma once
 #include "reference/test_scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 class MovedPair {
 public:
@@ -82,4 +82,4 @@ private:
     std::vector<Vec3> wanted_;
 };
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "reference/grain_reference.h"
+#include "sim/reference/grain_reference.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 struct Plate {
     Vec3 direction;
@@ -52,4 +52,4 @@ inline std::optional<PlateSolution> solve_plates(const SurfaceLaw& law, double p
     return std::nullopt;
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace reference {
+namespace mcdem::reference {
 
 /// Outward radial displacement, in F/(E R), of a free elastic sphere at angle theta [rad] from a point force.
 /// The load is balanced by a uniform body force, and the centre is fixed. Legendre series with its two
@@ -29,4 +29,4 @@ inline double point_force_on_sphere(double poisson_ratio, double theta) {
     return -(1 + nu) / (4 * std::numbers::pi) * sum - 3 * (1 - 2 * nu) / (8 * std::numbers::pi) * x;
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -11,26 +11,9 @@
 #include <vector>
 
 #include "cl/program.h"
-#include "reference/step_reference.h"
-#include "sim/engine.h"
+#include "sim/reference/comparison.h"
 
-namespace reference {
-
-using mcdem::ContactModel;
-using mcdem::Engine;
-using mcdem::FrictionLaw;
-using mcdem::KernelBuild;
-using mcdem::Packing;
-using mcdem::Precision;
-using mcdem::Replica;
-
-inline constexpr ContactModel all_models[] = {ContactModel::independent,
-                                              ContactModel::point_force_on_sphere,
-                                              ContactModel::sphere_to_sphere,
-                                              ContactModel::elastic_half_space,
-                                              ContactModel::mc_dem,
-                                              ContactModel::elastic_sphere,
-                                              ContactModel::hyperelastic_sphere};
+namespace mcdem::reference {
 
 /// The device selected by MCDEM_DEVICE; one per process.
 inline mcdem::Device& device() {
@@ -65,62 +48,6 @@ inline std::vector<KernelBuild> all_ways(const KernelBuild& build) {
 inline bool fuses_alike() { return device().info().platform.find("NVIDIA") == std::string::npos; }
 
 inline bool has_double() { return device().info().double_precision; }
-
-/// Gives the same numbers with every standard library.
-class Uniform {
-public:
-    explicit Uniform(unsigned seed) : engine_(seed) {}
-    double operator()(double low, double high) {
-        return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-    }
-    Vec3 vector(double size) {
-        const double x = (*this)(-size, size), y = (*this)(-size, size), z = (*this)(-size, size);
-        return {x, y, z};
-    }
-    std::vector<Vec3> vectors(std::size_t count, double size) {
-        std::vector<Vec3> all;
-        for (std::size_t i = 0; i < count; ++i) all.push_back(vector(size));
-        return all;
-    }
-
-private:
-    std::mt19937_64 engine_;
-};
-
-/// One material for grains and walls, with which every effect is visible within a few steps.
-inline Replica test_replica(ContactModel model = ContactModel::mc_dem) {
-    Replica replica;
-    replica.grains = {23.3e3, 0.45, 1000, 300, 0.3, 0.7, 0.5};
-    replica.walls = {2e5, 0.4, 0.2, 0.8};
-    replica.contact.model = model;
-    replica.contact.gamma = 1.1;
-    return replica;
-}
-
-/// A replica and its initial packing.
-struct Start {
-    Replica replica;
-    Packing packing;
-};
-
-/// Grains of 10 mm radius (5 % either way) on a cubic lattice with random offsets. Neighbours overlap by
-/// about 5 % of a diameter, and the outer grains touch the walls.
-inline Start jittered_lattice(Replica replica, int count, unsigned seed) {
-    constexpr double radius = 0.01, spacing = 0.019, wall_gap = 0.0095;
-    Uniform uniform(seed);
-    const int side = static_cast<int>(std::ceil(std::cbrt(count)));
-    Packing packing;
-    for (int i = 0; i < count; ++i) {
-        const Vec3 site(i % side, i / side % side, i / (side * side));
-        packing.position.push_back(spacing * site + Vec3::Constant(wall_gap) + uniform.vector(3e-4));
-        packing.diameter.push_back(2 * radius * uniform(0.95, 1.05));
-    }
-    const double size = (side - 1) * spacing + 2 * wall_gap;
-    replica.box = {size, size};
-    replica.plate.start = ((count - 1) / (side * side)) * spacing + 2 * wall_gap;
-    replica.plate.end = 0.9 * replica.plate.start;
-    return {replica, packing};
-}
 
 /// `layers` of a square lattice with random offsets, whose grains also overlap across the periodic sides.
 /// Some grains are in other images of the cell.
@@ -285,36 +212,6 @@ private:
     std::vector<Start> starts_;
 };
 
-/// The reference of one replica, with the engine's (rounded) state.
-inline StepReference reference_of(const Engine& engine, int r, const Start& start) {
-    StepReference reference(start.replica, start.packing);
-    if (engine.precision() == Precision::single_precision) reference.set_radius_slack(0x1p-11);
-    const auto state = engine.state(r);
-    reference.position = state.position;
-    reference.velocity = state.velocity;
-    reference.angular_velocity = state.angular_velocity;
-    reference.list_neighbours();
-    return reference;
-}
-
-/// Largest distance between vectors of two sets over the largest vector of the second set.
-inline double relative_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-    EXPECT_EQ(a.size(), b.size());
-    double size = 0, difference = 0;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-        size = std::max(size, b[i].norm());
-        const double d = (a[i] - b[i]).norm();
-        difference = d <= difference ? difference : d;  // NaN is kept
-    }
-    return difference == 0 ? 0 : difference / size;
-}
-
-inline double relative_difference(double a, double b) { return a == b ? 0 : std::abs(a - b) / std::abs(b); }
-
-inline std::vector<Vec3> wall_forces(const std::array<Vec3, 6>& forces) {
-    return {forces.begin(), forces.end()};
-}
-
 /// True if all bits are equal.
 inline bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return a.size() == b.size() &&
@@ -333,4 +230,4 @@ inline bool same_bits(const mcdem::ReplicaState& a, const mcdem::ReplicaState& b
            same_bits(a.angular_velocity, b.angular_velocity) && same_bits(forces(a), forces(b));
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

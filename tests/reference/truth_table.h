@@ -11,7 +11,7 @@
 
 #include "reference/plates_reference.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 /// The cells of a row by the names of their columns.
 struct TruthRow : std::map<std::string, std::string> {
@@ -67,4 +67,4 @@ inline std::vector<Plate> equal_plates(const std::vector<Vec3>& directions, doub
     return all;
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

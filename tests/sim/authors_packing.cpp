@@ -7,7 +7,7 @@
 #include "scene/packing/read_packing.h"
 #include "sim/simulation.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 using namespace mcdem;
 
@@ -98,4 +98,4 @@ std::map<std::string, MeanCurve> loading_strokes(const std::map<std::string, Set
     return means;
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

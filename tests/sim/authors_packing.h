@@ -9,7 +9,7 @@
 #include "core/recording.h"
 #include "scene/scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 /// Settings of the other code: one continuous stroke of 0.3 s, the Mindlin friction that it has, no
 /// relaxation before.
@@ -34,4 +34,4 @@ struct Setting {
 std::map<std::string, MeanCurve> loading_strokes(const std::map<std::string, Setting>& settings,
                                                  int replicas);
 
-}  // namespace reference
+}  // namespace mcdem::reference

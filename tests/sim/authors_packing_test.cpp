@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace reference::authors_packing {
+namespace mcdem::reference::authors_packing {
 namespace {
 
 using mcdem::ContactModel;
@@ -146,4 +146,4 @@ TEST(AuthorsPacking, FloatAgreesWithDouble) {
 }
 
 }  // namespace
-}  // namespace reference::authors_packing
+}  // namespace mcdem::reference::authors_packing

@@ -7,7 +7,7 @@
 #include "reference/test_scene.h"
 #include "sim/device_replica.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 using mcdem::PackingSize;
@@ -149,4 +149,4 @@ TEST(BatchLimits, NumberOfCellsIsLimitedForAnyBox) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

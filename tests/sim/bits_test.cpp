@@ -8,7 +8,7 @@
 #include "core/names.h"
 #include "sim/whole_run.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 constexpr int with_species = 7;
@@ -151,4 +151,4 @@ TEST(Bits, ACheckpointWithIndicesOutOfRangeIsRefused) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

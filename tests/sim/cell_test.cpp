@@ -8,7 +8,7 @@
 #include "core/stress.h"
 #include "sim/whole_run.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 using mcdem::Box;
@@ -350,4 +350,4 @@ TEST(Cell, StressTimesStrainRateIsTheWork) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -8,7 +8,7 @@
 #include "core/names.h"
 #include "reference/test_scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 double mass(const Start& start, std::size_t grain) {
@@ -192,4 +192,4 @@ TEST(Conservation, ForcesOnBothSidesAreOppositeAtOnePoint) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -9,7 +9,7 @@
 #include "core/names.h"
 #include "sim/whole_run.h"
 
-namespace reference::containers {
+namespace mcdem::reference::containers {
 namespace {
 
 using mcdem::ContainerShape;
@@ -323,4 +323,4 @@ TEST(PeriodicCell, IsRefusedIfGrainsCouldTouchTwice) {
 }
 
 }  // namespace
-}  // namespace reference::containers
+}  // namespace mcdem::reference::containers

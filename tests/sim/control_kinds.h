@@ -5,7 +5,7 @@
 
 #include "sim/traced_programme.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 struct Kind {
     const char* name;
@@ -47,4 +47,4 @@ inline std::vector<std::string> creeping(double relaxation_time) {
             "grains.friction=0.3", "contact.friction_law=mindlin"};
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -4,7 +4,7 @@
 
 #include "sim/squeezed_grain.h"
 
-namespace reference::effects_adhesion {
+namespace mcdem::reference::effects_adhesion {
 namespace {
 
 constexpr double work_of_adhesion = 0.05, radius = SqueezedGrain::radius, other_radius = 0.006;
@@ -134,4 +134,4 @@ TEST(Cohesion, AttractsInProportionToTheAreaOfIntersection) {
 }
 
 }  // namespace
-}  // namespace reference::effects_adhesion
+}  // namespace mcdem::reference::effects_adhesion

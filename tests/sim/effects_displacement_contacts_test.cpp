@@ -1,7 +1,7 @@
 // Effect bulge_contacts: a compressed grain whose equator touches side walls, and the contacts of a packing.
 #include "reference/test_scene.h"
 
-namespace reference::effects_displacement_contacts {
+namespace mcdem::reference::effects_displacement_contacts {
 namespace {
 
 constexpr double radius = 0.01;
@@ -90,4 +90,4 @@ TEST(ContactsMadeByDisplacement, WithPartZeroOnlyGeometricContactsRemain) {
 }
 
 }  // namespace
-}  // namespace reference::effects_displacement_contacts
+}  // namespace mcdem::reference::effects_displacement_contacts

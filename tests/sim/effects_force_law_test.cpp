@@ -1,7 +1,7 @@
 // Stiffening and plasticity: force of a single contact against its overlap.
 #include "sim/squeezed_grain.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 constexpr double deepest = 1e-3;
@@ -103,4 +103,4 @@ TEST(Plasticity, ReloadsAlongTheUnloadingCurveThenFollowsHertz) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -4,7 +4,7 @@
 
 #include "reference/moved_pair.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 Start lattice(FrictionLaw law, double friction_history) {
@@ -197,4 +197,4 @@ TEST(RollingResistance, DoesNotResistTwisting) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

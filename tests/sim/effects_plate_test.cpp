@@ -6,7 +6,7 @@
 #include "sim/simulated.h"
 #include "sim/squeezed_grain.h"
 
-namespace reference::effects_plate {
+namespace mcdem::reference::effects_plate {
 namespace {
 
 constexpr double radius = SqueezedGrain::radius, tilt_x = 0.1, tilt_y = -0.05, width = 6 * radius;
@@ -263,4 +263,4 @@ TEST(PlateCompliance, RigidPlateIsUnchanged) {
 }
 
 }  // namespace
-}  // namespace reference::effects_plate
+}  // namespace mcdem::reference::effects_plate

@@ -1,7 +1,7 @@
 // Viscoelasticity: each contact is a standard linear solid.
 #include "sim/squeezed_grain.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 mcdem::Effects relaxing(double part, double time) {
@@ -79,4 +79,4 @@ TEST(Relaxation, RecoversWithoutContact) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

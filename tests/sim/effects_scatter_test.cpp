@@ -6,7 +6,7 @@
 #include "sim/simulated.h"
 #include "sim/squeezed_grain.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 /// Young's moduli of the grains, drawn as the scene specifies.
@@ -106,4 +106,4 @@ TEST(TrueDiameter, LargerTrueDiameterIncreasesTheForce) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

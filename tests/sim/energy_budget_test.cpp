@@ -7,7 +7,7 @@
 
 #include "reference/test_scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 using mcdem::EnergyBudget;
@@ -215,4 +215,4 @@ TEST(EnergyBudget, ContactsWithoutAPotentialAreNotJudged) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

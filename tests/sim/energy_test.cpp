@@ -10,7 +10,7 @@
 #include "core/names.h"
 #include "reference/test_scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 constexpr double time_steps[] = {0.04, 0.02, 0.01};
@@ -145,4 +145,4 @@ TEST(Energy, ElasticCollisionReturnsAllEnergy) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

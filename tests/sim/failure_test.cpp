@@ -7,7 +7,7 @@
 #include "core/names.h"
 #include "sim/simulated.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 /// A large grain between floor and plate, and small grains without contacts; `large` is the large grain's
@@ -226,4 +226,4 @@ TEST(Failure, AdviceNamesOnlyKeysThatTheModelUses) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -5,7 +5,7 @@
 #include "core/errors.h"
 #include "sim/whole_run.h"
 
-namespace reference::family_bits {
+namespace mcdem::reference::family_bits {
 namespace {
 
 mcdem::Stage force_of(double force, double speed) {
@@ -188,4 +188,4 @@ TEST(EffectBits, DefaultValuesChangeNothing) {
 }
 
 }  // namespace
-}  // namespace reference::family_bits
+}  // namespace mcdem::reference::family_bits

@@ -6,7 +6,7 @@
 
 #include "sim/control_kinds.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 const std::string packing_text = R"([box]
@@ -114,4 +114,4 @@ TEST(ForceControl, UnreachableForceEndsWithItsCause) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -8,7 +8,7 @@
 
 #include "reference/test_scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 TEST(Layout, PadsEveryReplicaToWholeBlocks) {
@@ -62,4 +62,4 @@ TEST(Layout, GrainsOfABlockAreCloseToEachOther) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -8,7 +8,7 @@
 
 #include "reference/test_scene.h"
 
-namespace reference::ordered {
+namespace mcdem::reference::ordered {
 
 inline constexpr double radius = 0.01, youngs_modulus = 23.3e3, density = 11.5;
 
@@ -103,4 +103,4 @@ inline Start ordered_start(Replica replica, Order order, double overlap) {
     return start;
 }
 
-}  // namespace reference::ordered
+}  // namespace mcdem::reference::ordered

@@ -11,7 +11,7 @@
 #include "core/law_range.h"
 #include "core/names.h"
 
-namespace reference::ordered {
+namespace mcdem::reference::ordered {
 namespace {
 
 using mcdem::IntervalResult;
@@ -166,4 +166,4 @@ INSTANTIATE_TEST_SUITE_P(All, OrderedPackings, testing::ValuesIn(all_orders), []
 });
 
 }  // namespace
-}  // namespace reference::ordered
+}  // namespace mcdem::reference::ordered

@@ -9,7 +9,7 @@
 #include "sim/ordered_packings.h"
 #include "sim/simulated.h"
 
-namespace reference::ordered_strokes {
+namespace mcdem::reference::ordered_strokes {
 namespace {
 
 using namespace ordered;
@@ -114,4 +114,4 @@ TEST(OrderedStrokes, HaveTheForcesOfAFinerStep) {
 }
 
 }  // namespace
-}  // namespace reference::ordered_strokes
+}  // namespace mcdem::reference::ordered_strokes

@@ -5,7 +5,7 @@
 
 #include "sim/traced_programme.h"
 
-namespace reference::programme_evidence {
+namespace mcdem::reference::programme_evidence {
 namespace {
 
 constexpr double radius = 0.01, part = 0.4, relaxation_time = 0.05, hold = 0.15;
@@ -102,4 +102,4 @@ TEST(ProgrammeEvidence, ForceAndPositionControlAgree) {
 }
 
 }  // namespace
-}  // namespace reference::programme_evidence
+}  // namespace mcdem::reference::programme_evidence

@@ -3,7 +3,7 @@
 
 #include "reference/test_scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 constexpr int grains = 2 * PORTION_GRAINS + 808;
@@ -77,4 +77,4 @@ TEST(Reports, NameAFailedGrainInTheLastPortion) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

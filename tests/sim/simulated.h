@@ -5,7 +5,7 @@
 #include "reference/test_scene.h"
 #include "sim/simulation.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 struct Simulated {
     std::vector<std::vector<mcdem::Scan>> scans;  ///< of each replica
@@ -44,4 +44,4 @@ inline Simulated simulated(const mcdem::Scene& scene, const Packing& packing, bo
     return simulated(scene, std::vector<Packing>{packing}, fails);
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -6,7 +6,7 @@
 
 #include "reference/test_scene.h"
 
-namespace reference::species {
+namespace mcdem::reference::species {
 namespace {
 
 using mcdem::GrainMaterial;
@@ -189,4 +189,4 @@ TEST(SpeciesEnergy, IsConservedForEveryModel) {
 }
 
 }  // namespace
-}  // namespace reference::species
+}  // namespace mcdem::reference::species

@@ -5,7 +5,7 @@
 
 #include "reference/test_scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 class SqueezedGrain {
 public:
@@ -68,4 +68,4 @@ private:
     double force_ = 0, energy_ = 0;
 };
 
-}  // namespace reference
+}  // namespace mcdem::reference

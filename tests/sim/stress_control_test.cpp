@@ -6,7 +6,7 @@
 
 #include "sim/control_kinds.h"
 
-namespace reference::stress_control {
+namespace mcdem::reference::stress_control {
 namespace {
 
 const std::string cell_text = R"([container]
@@ -250,4 +250,4 @@ TEST(StressControl, UnreachableStressEndsWithItsCause) {
 }
 
 }  // namespace
-}  // namespace reference::stress_control
+}  // namespace mcdem::reference::stress_control

@@ -5,7 +5,7 @@
 #include "core/container.h"
 #include "sim/traced_programme.h"
 
-namespace reference::stress_crystal {
+namespace mcdem::reference::stress_crystal {
 namespace {
 
 using mcdem::Mat3;
@@ -164,4 +164,4 @@ TEST(StressOfACrystal, IsRecordedDuringMoves) {
 }
 
 }  // namespace
-}  // namespace reference::stress_crystal
+}  // namespace mcdem::reference::stress_crystal

@@ -5,7 +5,7 @@
 #include "core/names.h"
 #include "reference/test_scene.h"
 
-namespace reference::surface_energy {
+namespace mcdem::reference::surface_energy {
 namespace {
 
 constexpr double radius = 0.01;
@@ -98,4 +98,4 @@ TEST(FiniteStrain, InterpolatesBetweenElasticAndHyperelasticSphere) {
 }
 
 }  // namespace
-}  // namespace reference::surface_energy
+}  // namespace mcdem::reference::surface_energy

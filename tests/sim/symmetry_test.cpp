@@ -7,7 +7,7 @@
 #include "core/names.h"
 #include "reference/test_scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 /// A transformation of coordinates: of points, vectors and axial vectors.
@@ -204,4 +204,4 @@ TEST(Symmetry, HalfSpaceNearTheSphereEqualsSphereToSphere) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

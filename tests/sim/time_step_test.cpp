@@ -8,7 +8,7 @@
 #include "scene/read/read_scene.h"
 #include "sim/simulation.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 using mcdem::Scan;
@@ -117,4 +117,4 @@ TEST(TimeStep, IsShortenedOnlyIfNecessary) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace mcdem::reference

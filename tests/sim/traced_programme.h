@@ -7,7 +7,7 @@
 #include "sim/compliant_plate.h"
 #include "sim/simulation.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 struct Traced {
     struct Row {
@@ -89,4 +89,4 @@ model = "independent"
     return trace(scene, 0, {{{0.0105, 0.0105, 0.01}}, {0.02}});
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

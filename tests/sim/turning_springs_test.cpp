@@ -7,7 +7,7 @@
 #include "kernels/test_kernel.h"
 #include "reference/moved_pair.h"
 
-namespace reference::turning_springs {
+namespace mcdem::reference::turning_springs {
 namespace {
 
 using std::numbers::pi;
@@ -227,4 +227,4 @@ TEST(SpringEnergy, IsHalfTheSquareOfTheForceOverTheStiffness) {
 }
 
 }  // namespace
-}  // namespace reference::turning_springs
+}  // namespace mcdem::reference::turning_springs

@@ -3,7 +3,7 @@
 #include "reference/test_scene.h"
 #include "sim/simulation.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 /// Of every contact [N].
 inline std::vector<Vec3> forces_of(const mcdem::ReplicaState& state) {
@@ -136,4 +136,4 @@ inline void expect_same_after_restarts(const std::vector<Start>& starts, int sca
     }
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -68,6 +68,7 @@ void compute(PartedWork& parts, const Numbers& numbers, Device& device) {
 void compute_until_done(const SharedWork& work, PartedWork& parts, const std::string& device,
                         const std::function<Numbers()>& left) {
     Device chosen(device);
+    work.check(chosen);
     int tries = 0;
     for (Numbers before, now; !(now = left()).empty(); before = now) {
         tries = now == before ? tries + 1 : 0;

@@ -39,6 +39,8 @@ struct SharedWork {
     /// Starts or continues the work; `workers`: number of expected workers. Throws InputError if the content
     /// of the folder, or another program that uses it, is incompatible.
     std::function<std::unique_ptr<PartedWork>(std::size_t workers)> begin;
+    /// Called with the device before it is used.
+    std::function<void(Device&)> check;
     /// Called after the merge, when the lock on the parts is released: reports to the user, returns the exit
     /// code.
     std::function<int()> report;

@@ -4,6 +4,7 @@
 
 #include "cl/profile.h"
 #include "cli/parts/sharing.h"
+#include "cli/run/checked_device.h"
 #include "cli/run/scene_options.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"
@@ -159,6 +160,7 @@ SharedWork shared_work(const RunCommand& command, const Scene& scene) {
         cut.workers = workers;
         return std::make_unique<RunParts>(scene, options, cut);
     };
+    work.check = [&](Device& device) { check_at_first_use(device, scene.precision); };
     work.report = [&] { return report_run(command, {}); };
     return work;
 }
@@ -173,6 +175,7 @@ int failed_run(const RunCommand& command, const std::exception& error) {
 
 int run_alone(const RunCommand& command, const Scene& scene) {
     Device device(command.device);
+    check_at_first_use(device, scene.precision);
     spdlog::info("{}: {} on {}", scene.name, size_text(scene), device.info().name);
     RunSummary summary;
     try {

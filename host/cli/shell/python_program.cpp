@@ -46,11 +46,16 @@ std::string in_search_path(const std::string& name) {
     return "/usr/bin/" + name;  // named in the message
 }
 
+/// Whether pip has installed it, as lib/python3*/site-packages/mcdem/bin/mcdem.
+bool is_from_pip() { return is_there(this_program().parent_path().parent_path() / "start.py"); }
+
 std::string interpreter() {
     const std::string chosen = variable("MCDEM_PYTHON");
     if (!chosen.empty()) return chosen.find('/') == chosen.npos ? in_search_path(chosen) : chosen;
-    // In a virtual environment the interpreter next to this program, otherwise the system's.
-    for (const fs::path& python : {this_program().parent_path() / "python3", fs::path("/usr/bin/python3")})
+    // In a virtual environment its interpreter, otherwise the system's.
+    fs::path bin = this_program().parent_path();
+    if (is_from_pip()) bin /= "../../../../../bin";
+    for (const fs::path& python : {bin / "python3", fs::path("/usr/bin/python3")})
         if (::access(python.c_str(), X_OK) == 0) return python.string();
     return in_search_path("python3");
 }
@@ -65,6 +70,7 @@ std::vector<fs::path> package_folders() {
             if (entry.filename().string().starts_with("python3"))
                 for (const char* packages : {"dist-packages", "site-packages"})
                     if (is_there(entry / packages / "mcdem/start.py")) folders.push_back(entry / packages);
+    if (is_from_pip()) folders.push_back(prefix.parent_path());
     folders.insert(folders.end(), {prefix / "share/mcdem/python", bin / "python", MCDEM_SOURCE_PYTHON});
     return folders;
 }

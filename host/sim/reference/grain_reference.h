@@ -8,9 +8,9 @@
 
 #include "core/vec3.h"
 #include "elasticity/surface_displacement.h"
-#include "reference/sphere_series_reference.h"
+#include "sim/reference/sphere_series_reference.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 using mcdem::ContactModel;
 using mcdem::SurfaceLaw;
@@ -240,4 +240,4 @@ inline std::vector<double> surface_displacement_by_series(ContactModel model, do
     return result;
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -9,7 +9,7 @@
 #include "elasticity/surface_displacement.h"
 #include "scene/scene.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 using mcdem::Vec3;
 
@@ -135,4 +135,4 @@ private:
     double plate_z_ = 0, plate_velocity_ = 0, drag_ = 0, spin_drag_ = 0, radius_slack_ = 0;
 };
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace reference {
+namespace mcdem::reference {
 
 class SphereSeries {
 public:
@@ -140,4 +140,4 @@ private:
     std::vector<double> filter_;
 };
 
-}  // namespace reference
+}  // namespace mcdem::reference

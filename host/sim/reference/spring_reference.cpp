@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/recording.h"
-#include "reference/step_reference.h"
+#include "sim/reference/step_reference.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 /// `v`, perpendicular to the unit vector `before`, after the smallest rotation that takes `before` to `now`,
@@ -93,4 +93,4 @@ Vec3 StepReference::rolling_couple(double normal, const Body& a, const Body& b, 
                       memory.rolling);
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -4,10 +4,10 @@
 #include <numbers>
 #include <set>
 
-#include "reference/grain_reference.h"
-#include "reference/step_reference.h"
+#include "sim/reference/grain_reference.h"
+#include "sim/reference/step_reference.h"
 
-namespace reference {
+namespace mcdem::reference {
 
 StepReference::PairConstants StepReference::pair_constants(const Body& a, const Body& b) const {
     const bool wall = b.radius == 0;
@@ -83,4 +83,4 @@ double StepReference::self_consistent_overlap(double given, const Body& a, const
     return (low + high) / 2;
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference

@@ -1,4 +1,4 @@
-#include "reference/step_reference.h"
+#include "sim/reference/step_reference.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <numeric>
 
 #include "core/recording.h"
-#include "reference/grain_reference.h"
 #include "scene/packing/true_grains.h"
+#include "sim/reference/grain_reference.h"
 
-namespace reference {
+namespace mcdem::reference {
 namespace {
 
 using std::numbers::pi;
@@ -366,4 +366,4 @@ Totals StepReference::totals() const {
     return totals;
 }
 
-}  // namespace reference
+}  // namespace mcdem::reference
