@@ -46,3 +46,9 @@ class Experiment:
     plate_pause: float = 0.0  # the plate stands for this time at each scan [s]; 0: it does not stop
     plate_hold: float = 0.0  # .. at the lowest position [s]
     topology: Ints = field(default_factory=lambda: np.zeros((0, 3), int))  # (N, 3) contacts without forces: frame, grain, partner
+
+    @property
+    def has_grains_alone(self) -> bool:
+        """Whether grains were measured under load, but no contact forces."""
+        scans = self.recording.scans
+        return any(map(len, scans.position[1:])) and not any(map(len, scans.contacts))
