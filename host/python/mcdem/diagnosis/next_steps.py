@@ -22,7 +22,7 @@ MORE_PACKINGS = 3
 WORTH_SAYING = 0.9  # ratio to the present error or limit; larger ones are not reported
 MAX_STEPS = 4
 KEYS = {"modulus": "grains.youngs_modulus", "strain_offset": "the zero of the plate's displacement", "gamma": "contact.gamma",
-        "wall_friction": "walls.friction"}
+        "wall_friction": "walls.friction", "diameter_error": "the diameters of the grains"}
 
 
 @dataclass(frozen=True)

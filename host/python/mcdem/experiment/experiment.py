@@ -11,7 +11,7 @@ from ..results.recording import Ints, Recording
 # The scene keys that `materials` may contain, and those of `uncertainty`.
 MATERIALS = ("grains.youngs_modulus", "grains.poisson_ratio", "grains.excess_density", "grains.friction", "grains.restitution",
              "walls.youngs_modulus", "walls.friction")
-UNCERTAIN = *MATERIALS, "plate.start"
+UNCERTAIN = *MATERIALS, "plate.start", "grains.diameter"
 
 
 def other_materials(stated: Mapping[str, float], parameters: Mapping[str, Any]) -> list[str]:
