@@ -1,5 +1,6 @@
 """Whole diagnoses of simulated experiments with few grains. diagnose_test.py"""
 import pathlib
+import shutil
 import tempfile
 import unittest
 from dataclasses import replace
@@ -17,6 +18,7 @@ from mcdem.experiment.experiment import Measurement
 from mcdem.experiment.from_run import experiment_from
 from mcdem.experiment.read import read_experiment
 from mcdem.experiment.write import write_experiment
+from mcdem.observe.observables import observables
 
 SMALL = """name = "small"
 [box]
@@ -90,7 +92,7 @@ class Diagnoses(unittest.TestCase):
         """An experiment with only the force on its plate, times a factor."""
         whole = read_experiment(self.folder / "plain").recording
         stronger = replace(whole, scans=replace(whole.scans, wall_force=factor * whole.scans.wall_force))
-        write_experiment(self.folder / name, experiment_from(stronger, MEASUREMENT, plate_only=True), gzip=False)
+        write_experiment(self.folder / name, experiment_from(stronger, MEASUREMENT, measure="plate"), gzip=False)
 
     def test_a_curve_alone_is_compared_with_packings_that_are_drawn(self):
         """The packing of the curve is none of those drawn. Thirty times the force cannot be another packing."""
@@ -104,6 +106,23 @@ class Diagnoses(unittest.TestCase):
         stiff, _ = self.diagnosed("stiff", few)
         self.assertNotIn(stiff.verdict, (Verdict.no_gap, Verdict.effect))
         self.assertTrue(any("measure contact forces, with the positions" in step.what for step in stiff.next), stiff.next)
+
+    def test_an_effect_is_named_from_grains_without_contact_forces(self):
+        """Also if the experiment lists who touches."""
+        whole = read_experiment(self.folder / "adhesive").recording
+        write_experiment(self.folder / "grains", experiment_from(whole, MEASUREMENT, measure="grains"), gzip=False)
+        rows = [f"{k},{i},{j}\n" for k, one in enumerate(whole.scans.contacts) for i, j in zip(one.grain, one.partner) if j >= 0]
+        listed, few = self.folder / "listed", replace(FEW, candidates=["adhesion", "cross_contact"])
+        shutil.copytree(self.folder / "grains", listed)
+        (listed / "topology.csv").write_text("frame,grain,partner\n" + "".join(rows))
+        for name in ("grains", "listed"):
+            with self.subTest(name):
+                diagnosis, listener = self.diagnosed(name, few)
+                self.assertEqual((diagnosis.verdict, diagnosis.causes[0].effect), (Verdict.effect, "adhesion"))
+                self.assertAlmostEqual(diagnosis.causes[0].amplitude, 0.3, delta=0.06)
+                seen = listener.kept["evidence"].observed.reshape(len(observables()), -1)
+                self.assertEqual({one.needs for one, known in zip(observables(), np.isfinite(seen).any(axis=1)) if known}, {"plate", "grains"})
+                self.assertTrue(all(text.startswith("contacts.csv") for text in diagnosis.not_measured))
 
     def with_pauses(self, speed):
         """The plate is said to pause for 0.2 s at this speed [m/s]. The candidates are two laws of adhesion, which differ only in their

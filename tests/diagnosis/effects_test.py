@@ -144,12 +144,14 @@ class Nuisances(unittest.TestCase):
     def test_change_their_parameter(self):
         self.assertEqual([one.name for one in nuisances(PLAIN, {})], ["modulus", "strain_offset"])
         model = PLAIN.with_keys({"contact.model": "mc_dem"})
-        stated = {"grains.youngs_modulus": 0.1 * model["grains.youngs_modulus"], "grains.friction": 0.01, "walls.friction": 0.02}
+        stated = {"grains.youngs_modulus": 0.1 * model["grains.youngs_modulus"], "grains.friction": 0.01, "walls.friction": 0.02,
+                  "grains.diameter": 5e-5}
         found = nuisances(model, stated)
-        self.assertEqual([one.name for one in found], ["modulus", "strain_offset", "gamma", "friction", "wall_friction"])
+        self.assertEqual([one.name for one in found], ["modulus", "strain_offset", "gamma", "friction", "wall_friction", "diameter_error"])
         self.assertAlmostEqual(found[0].sigma, 0.1, 12)
-        self.assertEqual([one.sigma for one in found[3:]], [0.01, 0.02])
-        for one, name in zip(found, ("grains.youngs_modulus", "strain_offset", "contact.gamma", "grains.friction", "walls.friction")):
+        self.assertEqual([one.sigma for one in found[3:]], [0.01, 0.02, 5e-5])
+        for one, name in zip(found, ("grains.youngs_modulus", "strain_offset", "contact.gamma", "grains.friction", "walls.friction",
+                                    "effects.diameter_error")):
             self.assertEqual((moved(model, one.apply(model, 0.0)), moved(model, one.apply(model, one.sigma))), ([], [name]))
 
 

@@ -14,6 +14,7 @@ from mcdem.diagnosis.plan import plan_of, plan_of_others
 from mcdem.errors import InputError
 from mcdem.experiment.experiment import Experiment, other_materials
 from mcdem.experiment.from_run import experiment_from
+from mcdem.observe.contact_residuals import GrainsAlone
 from mcdem.observe.observation import observe
 from mcdem.results.engine_run import run_of
 
@@ -97,9 +98,41 @@ def quiet(_):
     """Notes that a test does not look at."""
 
 
+def of_grains(one):
+    """Without contact forces."""
+    return replace(experiment_from(one.recording, MEASUREMENT, measure="grains"), name=one.name)
+
+
+def with_first_frame(one):
+    """Positions of the packing at rest only."""
+    scans, none = one.recording.scans, np.zeros((0, 3))
+    position = (scans.position[0], *(none,) * (len(scans) - 1))
+    return replace(one, recording=replace(one.recording, scans=replace(scans, position=position)))
+
+
 def of_plate(one, **uncertainty):
     """Only its curve."""
-    return replace(experiment_from(one.recording, MEASUREMENT, plate_only=True), name=one.name, uncertainty=uncertainty)
+    return replace(experiment_from(one.recording, MEASUREMENT, measure="plate"), name=one.name, uncertainty=uncertainty)
+
+
+class WithoutForces(unittest.TestCase):
+    """Grains are compared by themselves if no experiment has contact forces."""
+
+    def test_grains_touch_from_the_error_of_their_overlap(self):
+        self.assertIsNone(plan(1, experiment(1)).comparison.material.grains_alone)
+        alone = of_grains(experiment(1))
+        self.assertEqual(plan(1, alone).comparison.material.grains_alone,
+                         GrainsAlone(np.sqrt(2 * MEASUREMENT.position_error**2 + MEASUREMENT.diameter_error**2 / 2)))
+        listed = replace(alone, topology=np.array([[1, 0, 1]]))
+        self.assertTrue(plan(1, listed).comparison.material.grains_alone.listed)
+        for both, wanted in (([alone, listed], False), ([listed, listed], True)):
+            self.assertEqual(plan_of(CYCLES[1], both, (), 8, 4, 1, False, quiet).comparison.material.grains_alone.listed, wanted)
+        self.assertIsNone(plan(1, with_first_frame(alone)).comparison.material.grains_alone)
+
+    def test_forces_have_an_assumed_error_in_simulations(self):
+        """For the power of measuring them."""
+        for measured, wanted in ((of_grains(experiment(1)), 0.05), (experiment(1), MEASUREMENT.force_error)):
+            self.assertEqual(plan(1, measured).model.instrument.stated.force_error, wanted)
 
 
 class WithoutGrains(unittest.TestCase):

@@ -9,6 +9,7 @@ from mcdem.diagnosis.decision import Limits
 from mcdem.diagnosis.diagnosis_types import Verdict
 from mcdem.diagnosis.not_measured import not_measured
 from mcdem.observe.grid import bins_of
+from mcdem.observe.observables import index_of
 from mcdem.errors import InputError
 
 
@@ -35,6 +36,11 @@ class PlateOnly(unittest.TestCase):
             self.assertEqual(len(told), len(files))
             for text, file in zip(told, files):
                 self.assertIn(file, text)
+
+    def test_measured_grains_need_contact_forces_only(self):
+        observed = np.full(len(bins_of(GRID)), np.nan)
+        observed[[0, 8 * index_of("touching")]] = 1
+        self.assertEqual([text.partition(":")[0] for text in not_measured(observed, GRID)], ["contacts.csv", "contacts.csv in the frames of grains.csv"])
 
     def test_within_the_prior_of_the_modulus_there_is_no_gap(self):
         self.assertLessEqual(sum(diagnosed(1, seed).gap.detected for seed in range(1, 21)), 4)

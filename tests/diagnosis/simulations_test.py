@@ -13,6 +13,7 @@ from mcdem.diagnosis.plate_motion import neglected_motion
 from mcdem.diagnosis.simulations import Simulations
 from mcdem.experiment.experiment import Experiment
 from mcdem.experiment.instrument import Instrument
+from mcdem.observe.contact_residuals import GrainsAlone
 from mcdem.observe.grid import bins_of
 from mcdem.observe.observables import index_of, observables
 from mcdem.results.names import Phase
@@ -125,6 +126,15 @@ class Origin(unittest.TestCase):
         self.assertEqual(origin(packing__seed=7), drawn)
         other = origin(packing__packing_fraction=0.5)
         self.assertEqual({name for name in drawn if drawn[name] != other[name]}, {"drawn packing.packing_fraction"})
+
+    def test_of_grains_alone_says_so(self):
+        """A library of an experiment with contact forces has no values of grains alone."""
+        def origin(listed):
+            material = replace(self.small.comparison.material, grains_alone=GrainsAlone(1e-5, listed))
+            return Simulations(self.small.plan(comparison=replace(self.small.comparison, material=material)), self.small.folder, "").origin
+
+        self.assertEqual(set(origin(False)) - set(self.origin()), {"grains without contact forces"})
+        self.assertNotEqual(origin(False), origin(True))
 
     def test_has_instrument_grains_precision_version_and_kernels(self):
         for name, value in vars(MEASUREMENT).items():

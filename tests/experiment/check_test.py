@@ -187,7 +187,12 @@ SPOILT = {
          "forces on the grains do not cancel, was the packing at rest, are contacts left out? Frames: 1 in 1 frame, first in frame 4: "),
     ],
     "left out": [
-        (MISSING, lambda e: with_scans(e, contacts=(NO_CONTACTS,) * 9), "contact forces: of the packing only the top force"),
+        (MISSING, lambda e: with_recording(with_scans(without_positions(e, range(9)), contacts=(NO_CONTACTS,) * 9), diameter=np.zeros(0)),
+         "contact forces: of the packing only the top force"),
+        (MISSING, lambda e: without_positions(with_scans(e, contacts=(NO_CONTACTS,) * 9), range(1, 9)), "contact forces: of the packing only the top"),
+        (MISSING, lambda e: without_positions(with_scans(e, contacts=(NO_CONTACTS,) * 9), range(1, 9)), "positions in 8 of 9 frames: simulations start"),
+        (MISSING, lambda e: with_scans(e, contacts=(NO_CONTACTS,) * 9), "contact forces: of the packing the top force is compared, who touches (by"),
+        (MISSING, lambda e: replace(with_scans(e, contacts=(NO_CONTACTS,) * 9), topology=np.zeros((1, 3), int)), "who touches (as listed)"),
         (MISSING, lambda e: without_contacts(e, lambda one: one.grain >= 0, [3]), "contacts in 1 of 9 frames under load"),
         (MISSING, drop_wall(Wall.plate), "contacts with plate: tilt of the plate"),
         (MISSING, drop_wall(Wall.floor), "contacts with floor: the part of the load"),

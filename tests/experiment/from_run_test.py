@@ -30,6 +30,10 @@ def options(**changes):
     return Options(**none | {"instrument": Instrument()} | changes)
 
 
+def whole_experiment(seen):
+    return experiment_from(seen, Measurement())
+
+
 class FromRun(unittest.TestCase):
     def problems_of(self, call, *arguments):
         with self.assertRaises(InputError) as refused:
@@ -50,9 +54,16 @@ class FromRun(unittest.TestCase):
 
     def test_the_plate_alone_states_no_errors_of_grains(self):
         whole = seen_by_an_instrument([[1, 1, 1]])
-        curve = experiment_from(whole, Measurement(1e-4, 2e-5, 0.05, 0.1), plate_only=True)
+        curve = experiment_from(whole, Measurement(1e-4, 2e-5, 0.05, 0.1), measure="plate")
         self.assertEqual((curve.measurement, len(curve.recording.diameter), list(curve.recording.scans.top_force)),
                          (Measurement(), 0, list(whole.scans.top_force)))
+
+    def test_grains_without_forces_state_no_errors_of_forces(self):
+        whole = seen_by_an_instrument([[1, 1, 1]])
+        grains = experiment_from(whole, Measurement(1e-4, 2e-5, 0.05, 0.1), measure="grains")
+        self.assertEqual((grains.measurement, [len(one) for one in grains.recording.scans.contacts]), (Measurement(1e-4, 2e-5), [0, 0]))
+        self.assertEqual(list(map(len, grains.recording.scans.position)), list(map(len, whole.scans.position)))
+        self.assertTrue(grains.has_grains_alone and not whole_experiment(whole).has_grains_alone)
 
     def test_refuses_cells(self):
         self.assertEqual(self.problems_of(experiment_from, seen_by_an_instrument(shape=ContainerShape.cell), Measurement()),

@@ -10,6 +10,7 @@ from small_folder import SMALL, STAGES, TABLES, FolderCase
 from mcdem.errors import InputError, RunError
 from mcdem.experiment.plate import set_forces
 from mcdem.experiment.read import read_experiment, read_experiments
+from mcdem.experiment.topology import with_listed_contacts
 from mcdem.experiment.write import write_experiment
 from mcdem.results import Phase, Wall
 
@@ -123,6 +124,15 @@ class Values(FolderCase):
     def test_grains_without_contacts(self):
         del self.texts["contacts.csv"]
         self.assertEqual([len(one) for one in self.read().recording.scans.position], [2, 2, 0])
+
+    def test_listed_contacts_count_where_forces_are_missing(self):
+        self.texts["topology.csv"] = "frame,grain,partner\n1,1,0\n1,0,floor\n1,0,1\n2,0,1\n"
+        forced = with_listed_contacts(self.read()).scans.contacts
+        self.assertTrue(len(forced[1]) == 5 and np.isfinite(forced[1].force).all())
+        del self.texts["contacts.csv"]
+        frames = with_listed_contacts(self.read()).scans.contacts
+        self.assertEqual([list(zip(one.grain, one.partner)) for one in frames], [[], [(0, -1 - Wall.floor), (0, 1)], [(0, 1)]])
+        self.assertTrue(all(np.isnan(one.force).all() for one in frames))
 
     def test_a_cylinder_has_a_side(self):
         self.replace("experiment.toml", *CYLINDER)

@@ -118,6 +118,12 @@ class Reading(Settings):
         periodic, problems = parsed(TEXT + '[container]\nshape = "periodic"')
         self.assertEqual((periodic.recording.box, problems), (Box(0.04, 0.03, ContainerShape.periodic), []))
 
+    def test_diameters_have_an_uncertainty_and_no_value(self):
+        settings, problems = parsed("[box]\nsize = [1, 1]\n[uncertainty]\ndiameter = 5e-5")
+        self.assertEqual((settings.uncertainty, problems), ({"grains.diameter": 5e-5}, []))
+        self.assertEqual(parsed(settings_text(settings))[0].uncertainty, settings.uncertainty)
+        self.assertIn("grains.diameter", parsed("[box]\nsize = [1, 1]\n[grains]\ndiameter = 0.02")[1][0])
+
     def test_a_full_name_of_an_uncertainty_is_read(self):
         settings, problems = parsed(TEXT.replace("walls.youngs", "grains.youngs").replace("youngs_modulus = 500.0", "friction = 0.2"))
         self.assertEqual((settings.uncertainty, problems), ({"grains.youngs_modulus": 1e6, "grains.friction": 0.2}, []))

@@ -1,6 +1,7 @@
 """Recordings as vectors: local linear regression through the scans near a bin, grids, holds. observation_test.py"""
 import math
 import unittest
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from synthetic import scans
 from mcdem.observe.grid import Grid, HoldScans, bins_of, grid_of
 from mcdem.observe.observables import index_of, observables
 from mcdem.observe.observation import observe, scan_observables
-from mcdem.results import Box, Contacts, Phase, Recording, Wall
+from mcdem.results import NO_CONTACTS, Box, Contacts, Phase, Recording, Wall
 
 START, STROKE = 0.15, 0.03  # [m]
 GRID = Grid([0.01, 0.02], 0.004, STROKE)
@@ -100,6 +101,22 @@ class Grids(unittest.TestCase):
             np.testing.assert_allclose(fine.displacement, np.multiply((0.42, 0.61, 0.80, 0.98), STROKE), rtol=1e-12)
             self.assertAlmostEqual(fine.width, 0.12 * STROKE, 12)
             self.assertAlmostEqual(grid_of(strokes(8, cycles)).width, 1.6 / 8 * STROKE, 12)  # three scans wide
+
+
+    def test_without_contact_forces_are_at_the_frames_with_grains(self):
+        rows = [(STROKE * k / 20, 0) for k in range(21)] + [(STROKE * (1 - k / 20), 0, UP) for k in range(1, 21)]
+        recording, there = recording_of(rows), np.zeros((1, 3))
+
+        def seen(*frames, contacts=NO_CONTACTS):
+            position = tuple(there if k in (0, *frames) else np.zeros((0, 3)) for k in range(len(rows)))
+            found = replace(recording, scans=replace(recording.scans, position=position, contacts=(contacts,) * len(rows)))
+            return np.array(grid_of(found).displacement) / STROKE
+
+        parts = (0.42, 0.61, 0.80, 0.98)
+        for frames, wanted in (((), parts), ((20,), (0.42, 0.61, 0.80, 1)), ((10, 20), (0.5, 0.61, 0.80, 1)), ((5, 10, 15, 20), (0.25, 0.5, 0.75, 1)),
+                               ((1, 2, 20, 30), (0.42, 0.61, 0.80, 1)), ((4, 7, 9, 12, 17, 20), (0.45, 0.6, 0.85, 1)), (range(41), parts)):
+            np.testing.assert_allclose(seen(*frames), wanted, rtol=1e-9, err_msg=str(frames))
+        np.testing.assert_allclose(seen(5, 10, contacts=Lattice(2).contacts), parts, rtol=1e-9)
 
 
 def programme(*stages):

@@ -36,7 +36,7 @@ class Options:
     effects: Sequence[str] = ()  # none: CHALLENGED_EFFECTS
     measurement: Measurement = Measurement(1e-4, 2e-5, 0.05, 0.004)
     device: str = ""
-    plate_only: bool = False  # experiments without grains and contacts
+    measure: str = "all"  # of each experiment (from_run.MEASURED)
 
 
 def make_challenge(scene: engine.Scene, options: Options, progress: Progress = lambda fraction: None) -> str:
@@ -173,4 +173,4 @@ class _Making:
             raise RunError(f"{self._challenge.cases[number].folder}: its simulation failed at {failure}")
         recording, folder = self._simulator.measured(place), self._folder(number)
         remove_temporaries(folder)
-        write_experiment(folder, experiment_from(recording, self._options.measurement, self._options.plate_only), gzip=True)
+        write_experiment(folder, experiment_from(recording, self._options.measurement, self._options.measure), gzip=True)

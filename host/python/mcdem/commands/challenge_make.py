@@ -37,12 +37,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--effects", metavar="NAME,..", type=names, action="extend", default=[],
                         help="Effects to hide; default: a dozen of all kinds")
     add_numbers(parser, SIZES | MEASUREMENT)
-    add_plate_only(parser)
+    add_measure(parser)
     add_device_option(parser)
 
 
-def add_plate_only(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--plate-only", action="store_true", help="Only the force on the plate is measured, no grains and contacts")
+def add_measure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--measure", choices=("plate", "grains", "all"), default="all",
+                        help="What is measured: the force on the plate; also diameters and positions of grains; also contact forces")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -51,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
     from ..experiment.experiment import Measurement
     scene = read_scene(options)
     truth = options.truth or os.path.join(options.out, "truth.json")
-    wanted = Options(folder=options.out, truth=truth, seed=options.seed, effects=options.effects, device=options.device, plate_only=options.plate_only,
+    wanted = Options(folder=options.out, truth=truth, seed=options.seed, effects=options.effects, device=options.device, measure=options.measure,
                      size=ChallengeSize(*given(options, SIZES).values()), measurement=Measurement(**given(options, MEASUREMENT)))
     with interruptible(), Progress() as progress:
         seal = make_challenge(scene, wanted, progress.show)

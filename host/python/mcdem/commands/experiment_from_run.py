@@ -2,7 +2,7 @@
 import argparse
 import re
 
-from .challenge_make import MEASUREMENT, add_plate_only
+from .challenge_make import MEASUREMENT, add_measure
 from .command_line import add_numbers, any_seed, at_least_zero, given, number_in, output_path
 
 EPILOG = """\
@@ -45,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--uncertainty", metavar="KEY=SIGMA", action="append", default=[],
                         help="Stated standard error of a material parameter, such as grains.youngs_modulus=500; may be repeated")
     parser.add_argument("--seed", metavar="N", type=any_seed, default=1, help="Seed of the noise")
-    add_plate_only(parser)
+    add_measure(parser)
     parser.add_argument("--gzip", action="store_true", help="Compress the tables with gzip")
 
 
@@ -56,5 +56,5 @@ def run(options: argparse.Namespace) -> int:
     instrument = Instrument(Measurement(**given(options, STATED)), **given(options, UNSTATED))
     print(write_from_run(Options(run=options.RUN, out=options.out, replica=options.replica, name=options.name, seed=options.seed,
                                  instrument=instrument, uncertainty=options.uncertainty, gzip=options.gzip,
-                                 plate_only=options.plate_only)))
+                                 measure=options.measure)))
     return 0

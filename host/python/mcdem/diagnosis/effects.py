@@ -296,7 +296,7 @@ def nuisances(model: Model, uncertainty: Mapping[str, float], has_grains: bool =
         Nuisance("strain_offset", "m", zero, _read("strain_offset"))]
     if model["contact.model"] == "mc_dem":
         found.append(Nuisance("gamma", "", GAMMA_SIGMA, _plus("contact.gamma")))
-    for name, key in (("friction", "grains.friction"), ("wall_friction", "walls.friction")):
+    for name, key in (("friction", "grains.friction"), ("wall_friction", "walls.friction"), ("diameter_error", "grains.diameter")):
         effect, sigma = find_effect(name), uncertainty.get(key, 0.0)
         if effect and sigma > 0:
             found.append(Nuisance(name, "", sigma, effect.apply))

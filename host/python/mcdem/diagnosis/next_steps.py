@@ -5,6 +5,8 @@ from math import erfc, nan, sqrt
 
 import numpy as np
 
+from ..observe.grid import bins_each
+from ..observe.observables import observables
 from ..results.recording import Floats
 from .decision import Decision, Findings, Limits, chosen_proposal
 from .diagnosis_types import Diagnosis, NextStep, Verdict
@@ -21,7 +23,7 @@ MORE_PACKINGS = 3
 WORTH_SAYING = 0.9  # ratio to the present error or limit; larger ones are not reported
 MAX_STEPS = 4
 KEYS = {"modulus": "grains.youngs_modulus", "strain_offset": "the zero of the plate's displacement", "gamma": "contact.gamma",
-        "wall_friction": "walls.friction"}
+        "wall_friction": "walls.friction", "diameter_error": "the diameters of the grains"}
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,8 @@ def _measurements_of(evidence: Evidence, data: GapData) -> list[Measurement]:
         add("measure positions twice as accurately", noise=_finer_noise(evidence, data.noise))
     if not_measured(evidence.observed, evidence.library.grid):
         every = usable_bins(evidence.library.baseline, parameters_of(evidence), np.zeros(len(data.mean)))
+        needs = np.array([one.needs for one in observables()])
+        every = every[needs[every // bins_each(len(data.mean))] != "grains"]  # not compared where forces are measured
         if len(every) > len(data.bins):
             add("measure contact forces, with the positions of grains in the same frames", bins=every)
     return measurements

@@ -11,6 +11,7 @@ from .. import _engine as engine
 from ..errors import InputError
 from ..experiment.experiment import Experiment
 from ..experiment.instrument import Instrument
+from ..observe.contact_residuals import GrainsAlone
 from ..observe.grid import Grid, grid_of
 from ..results.names import Phase
 from ..results.parameters import has_programme
@@ -161,10 +162,18 @@ def _filled(experiments: list[Experiment], packings: list[Packing], grid: Grid, 
             pairs: int, seed: int, recordings: bool) -> Plan:
     model = packings[0].model
     chosen, hindered = _choice(model, candidates)
-    comparison = Comparison(grid, model.material(), model["protocol.discard"])
+    comparison = Comparison(grid, replace(model.material(), grains_alone=_grains_alone(experiments)), model["protocol.discard"])
     drawn = not experiments[0].recording.has_start
     uncertain = nuisances(model, experiments[0].uncertainty, not drawn)
     return Plan(experiments, packings, comparison, chosen, hindered, uncertain, replicates, min(pairs, replicates), seed, recordings, drawn)
+
+
+def _grains_alone(experiments: Sequence[Experiment]) -> GrainsAlone | None:
+    """Grains touch from one standard error of their overlap."""
+    errors = experiments[0].measurement
+    if not all(one.has_grains_alone for one in experiments):
+        return None
+    return GrainsAlone(math.sqrt(2 * errors.position_error**2 + 0.5 * errors.diameter_error**2), all(len(one.topology) for one in experiments))
 
 
 def _choice(model: Model, wanted: Sequence[str]) -> tuple[list[Effect], list[str]]:
@@ -237,9 +246,8 @@ def _drawn(scene: engine.Scene, experiment: Experiment, replicates: int, seed: i
     model = _model_of(scene, experiment)
     starts = engine.make_packings(model.scene, _seeds(seed, replicates, SEEDS_OF_A_PACKING * number))
     mean_diameter = float(engine.make_packings(model.scene, [APART])[0].diameter.mean())  # the same for every seed and number of replicates
-    stated = experiment.measurement
-    assumed = replace(stated, position_error=stated.position_error or ASSUMED_POSITION_ERROR * mean_diameter,
-                      force_error=stated.force_error or ASSUMED_FORCE_ERROR)
+    stated = model.instrument.stated
+    assumed = replace(stated, position_error=stated.position_error or ASSUMED_POSITION_ERROR * mean_diameter)
     return Packing(replace(model, mean_diameter=mean_diameter, instrument=Instrument(assumed)), starts)
 
 
@@ -266,4 +274,7 @@ def _model_of(scene: engine.Scene, experiment: Experiment) -> Model:
     box = recording.box
     base = scene._variant(changes)._with_programme(recording.parameters)._with_box(box.shape, box.size_x, box.size_y)
     mean_diameter = float(recording.diameter.mean()) if len(recording.diameter) else math.nan
-    return Model(base, {}, Instrument(experiment.measurement), mean_diameter, experiment.plate_speed)
+    stated = experiment.measurement
+    if not any(map(len, scans.contacts)):
+        stated = replace(stated, force_error=stated.force_error or ASSUMED_FORCE_ERROR)
+    return Model(base, {}, Instrument(stated), mean_diameter, experiment.plate_speed)

@@ -12,6 +12,7 @@ import numpy as np
 from .. import _engine as engine
 from ..errors import InputError
 from ..experiment.experiment import Experiment, other_materials
+from ..experiment.topology import with_listed_contacts
 from ..look import Path
 from ..number_text import shortest
 from ..observe.grid import Grid, HoldScans
@@ -112,6 +113,8 @@ class Simulations:
         origin = model.texts | {f"measurement.{name}": shortest(value) for name, value in vars(stated).items()}
         if self.plan.drawn:
             origin |= {DRAWN + key: text for key, text in model.scene._texts.items() if key.startswith("packing.") and key != "packing.seed"}
+        if alone := self.plan.comparison.material.grains_alone:
+            origin |= {"grains without contact forces": "contacts are listed" if alone.listed else "contacts by overlap"}
         return origin | {
             "mean diameter": shortest(model.mean_diameter), "grains": str(len(self.plan.packings[0].starts[0])),
             "kernels": engine.kernels_digest(), "observables": hashlib.sha256("".join(f"{one.name};" for one in observables()).encode()).hexdigest(),
@@ -120,7 +123,8 @@ class Simulations:
     def observed(self) -> Floats:
         """(experiments, bins)"""
         comparison = self.plan.comparison
-        return np.array([observe(one.recording, comparison.grid, comparison.material, comparison.discard) for one in self.plan.experiments])
+        return np.array([observe(with_listed_contacts(one), comparison.grid, comparison.material, comparison.discard)
+                         for one in self.plan.experiments])
 
     def library(self, progress: Progress | None = None) -> Floats:
         """The baseline, packing after packing; then for each probe and each of its two amplitudes the paired rows of the baseline again."""

@@ -15,14 +15,15 @@ MIN_TILT = 1e-3  # angle of forces to the line of centres that indicates tangent
 FITTED = ("grains.youngs_modulus", "grains.friction", "walls.friction")  # by a diagnosis
 TOLD_BY = {Wall.floor: "the part of the load that reaches the floor: wall friction, buoyancy",
            Wall.plate: "tilt of the plate, and whether contact forces agree with the plate's own gauge"}
+WHAT_GRAINS_TELL = "overlaps, local packing fractions and displacements of grains"
 TOLD_BY_SIDES = "the side force and the friction of the walls"
 
 
 def find_missing(experiment: Experiment) -> Findings:
     recording = experiment.recording
     yield from _frames(recording)
-    yield from _positions(recording)
-    yield from _contacts(recording)
+    yield from _positions(experiment)
+    yield from _contacts(experiment)
     yield from _tangential(experiment)
     yield from _settings(experiment)
 
@@ -43,24 +44,33 @@ def _frames(recording: Recording) -> Findings:
                       "protocol.scan_at_start)")
 
 
-def _positions(recording: Recording) -> Findings:
-    without = sum(not len(position) for position in recording.scans.position)
+def _positions(experiment: Experiment) -> Findings:
+    recording = experiment.recording
+    without, seen = sum(not len(position) for position in recording.scans.position), any(map(len, recording.scans.position[1:]))
     if not len(recording.diameter):
         yield missing(GRAINS, "diameters and positions: a diagnosis then compares the curve with packings that the scene generates, whose "
                               "scatter hides small effects. Without positions no overlap can be assigned to a force, which is needed to "
                               "distinguish stiffness, cross-contact effects and adhesion")
+    elif without and not seen:
+        yield missing(GRAINS, f"positions in {without} of {len(recording.scans)} frames: simulations start from those of frame 0, and only the "
+                              "top force is compared; positions under load would also tell who touches, overlaps, packing fractions and motion")
     elif without:
-        yield missing(GRAINS, f"positions in {without} of {len(recording.scans)} frames: overlaps and displacements of grains are compared "
-                              "in the others only")
+        yield missing(GRAINS, f"positions in {without} of {len(recording.scans)} frames: {WHAT_GRAINS_TELL} are compared in the others only")
 
 
-def _contacts(recording: Recording) -> Findings:
-    scans = recording.scans
-    listed = [frame.contacts for frame in contacts_of(recording)]
-    if not listed:
+def _contacts(experiment: Experiment) -> Findings:
+    recording = experiment.recording
+    scans, listed = recording.scans, [frame.contacts for frame in contacts_of(recording)]
+    if experiment.has_grains_alone:
+        who = "who touches (as listed)" if len(experiment.topology) else "who touches (by overlap)"
+        yield missing(CONTACTS, f"contact forces: of the packing the top force is compared, {who}, {WHAT_GRAINS_TELL}, and the forces that Hertz's law "
+                                "gives these overlaps; measured forces would also tell friction from other effects, adhesion, and errors of "
+                                "sizes from those of forces")
+    elif not listed:
         yield missing(CONTACTS, "contact forces: of the packing only the top force is left, on which stiffness, cross-contact effects and "
                                 "an offset of the plate have similar effects; friction, adhesion, scatter among the grains, buoyancy and "
                                 "tilt have little influence on it")
+    if not listed:
         return
     empty = sum(not len(contacts) and force > 0 for contacts, force in zip(scans.contacts, scans.top_force.tolist()))
     if empty:

@@ -11,7 +11,7 @@ from ..results.recording import Ints, Recording
 # The scene keys that `materials` may contain, and those of `uncertainty`.
 MATERIALS = ("grains.youngs_modulus", "grains.poisson_ratio", "grains.excess_density", "grains.friction", "grains.restitution",
              "walls.youngs_modulus", "walls.friction")
-UNCERTAIN = *MATERIALS, "plate.start"
+UNCERTAIN = *MATERIALS, "plate.start", "grains.diameter"
 
 
 def other_materials(stated: Mapping[str, float], parameters: Mapping[str, Any]) -> list[str]:
@@ -46,3 +46,9 @@ class Experiment:
     plate_pause: float = 0.0  # the plate stands for this time at each scan [s]; 0: it does not stop
     plate_hold: float = 0.0  # .. at the lowest position [s]
     topology: Ints = field(default_factory=lambda: np.zeros((0, 3), int))  # (N, 3) contacts without forces: frame, grain, partner
+
+    @property
+    def has_grains_alone(self) -> bool:
+        """Whether grains were measured under load, but no contact forces."""
+        scans = self.recording.scans
+        return any(map(len, scans.position[1:])) and not any(map(len, scans.contacts))

@@ -18,6 +18,7 @@ from .plate import scan_places
 from .publish import expect_free, publish, read_back, work_folder
 from .write import SUMS_FILE, experiment_files, sums_text, write_files
 
+MEASURED = ("plate", "grains", "all")  # the plate; and diameters and positions of grains; and the forces of contacts
 PART_OF_A_GRAIN = 8  # errors are at most this part of the smallest diameter: with larger ones the result could not be read back
 
 
@@ -31,7 +32,7 @@ class Options:
     uncertainty: Sequence[str]  # "grains.youngs_modulus=500" [unit of the key]
     seed: int  # of the noise
     gzip: bool
-    plate_only: bool = False  # without grains and contacts
+    measure: str = "all"  # one of MEASURED
 
     @property
     def measurement(self) -> Measurement:
@@ -51,7 +52,7 @@ def write_from_run(options: Options) -> str:
         raise InputError(f"{options.run}: holds a text that is not UTF-8 ({error.reason})") from error
     expect_measurable(truth, options)
     seen = measured(truth, options.instrument, options.seed)
-    stated = experiment_from(seen, options.measurement, options.plate_only)
+    stated = experiment_from(seen, options.measurement, options.measure)
     experiment = replace(stated, uncertainty=uncertainty, name=options.name or stated.name)
     _write(experiment, options)
     contacts, listed = (sum(map(len, one.scans.contacts)) for one in (truth, experiment.recording))
@@ -59,22 +60,25 @@ def write_from_run(options: Options) -> str:
             "seen")
 
 
-def experiment_from(seen: Recording, measurement: Measurement, plate_only: bool = False) -> Experiment:
+def experiment_from(seen: Recording, measurement: Measurement, measure: str = "all") -> Experiment:
     """A recording as an instrument reads it, as an experiment with its label. Materials are taken from its parameters.
 
-    `plate_only`, or without positions in frame 0, only the plate remains: grains and contacts then have no identity. Raises InputError for a
-    cell.
+    `measure`: one of MEASURED. Without positions in frame 0, only the plate remains: grains and contacts then have no identity. Raises
+    InputError for a cell.
     """
     if seen.box.is_cell:
         raise InputError(f"{seen.label}: container.shape must be one with a plate, got {seen.box.shape}: an experiment is a compression "
                          "by a plate")
-    stated = {key: to_number(value_of(seen.parameters, key)) for key in MATERIALS}
-    materials = {key: value for key, value in stated.items() if value is not None}
+    values = {key: to_number(value_of(seen.parameters, key)) for key in MATERIALS}
+    materials = {key: value for key, value in values.items() if value is not None}
     scans = seen.scans
-    if plate_only or not seen.has_start:
+    if measure == "plate" or not seen.has_start:
         scans = replace(scans, position=(NO_VECTORS,) * len(scans), contacts=(NO_CONTACTS,) * len(scans))
         seen = replace(seen, diameter=np.zeros(0), scans=scans)
-    return Experiment(seen.label, seen, materials, measurement=Measurement() if plate_only else measurement)
+    elif measure == "grains":
+        seen = replace(seen, scans=replace(scans, contacts=(NO_CONTACTS,) * len(scans)))
+    stated = {"plate": Measurement(), "grains": replace(measurement, force_error=0.0, force_threshold=0.0), "all": measurement}[measure]
+    return Experiment(seen.label, seen, materials, measurement=stated)
 
 
 def chosen_replica(labels: Sequence[str], options: Options) -> int:

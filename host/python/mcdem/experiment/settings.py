@@ -60,6 +60,7 @@ LIMITS = {
     "grains.excess_density": Limits(-1e5, 1e5, "kg/m3"),
     "grains.friction": FRICTION,
     "grains.restitution": Limits(0, 1, above=True),
+    "grains.diameter": Limits(0, 1, "m"),  # only its uncertainty
     "walls.youngs_modulus": STIFFNESS,
     "walls.friction": FRICTION,
     "measurement.position_error": Limits(0, 1, "m"),

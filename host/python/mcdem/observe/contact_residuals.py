@@ -7,13 +7,21 @@ import numpy as np
 
 from ..experiment.container import apart, lengths, towards_wall, wall_distance
 from ..results.names import Wall
-from ..results.recording import Floats
+from ..results.recording import Box, Floats, Ints
 
 if TYPE_CHECKING:
     from .seen_scans import SeenScans
 
 MOST_PAIRS = 1_000_000  # of contacts of one grain, whose displacements are computed at once
 CLOSEST = 0.0225  # of sin^2(theta / 2): contacts closer than 17 degrees are measurement errors
+
+
+@dataclass(frozen=True)
+class GrainsAlone:
+    """Without measured contact forces, grains are compared by themselves."""
+
+    touching: float  # overlap from which they touch [m]
+    listed: bool = False  # whether the experiment lists which grains touch (topology.csv)
 
 
 @dataclass(frozen=True)
@@ -26,6 +34,7 @@ class Material:
     wall_poisson_ratio: float = 0.5
     friction: float = 0.0  # between grains
     force_threshold: float = 0.0  # as stated by the instrument [N]
+    grains_alone: GrainsAlone | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,20 +73,26 @@ def contact_residuals(seen: "SeenScans") -> ContactResiduals:
     wall, at_wall = -1 - seen.partner[walls], here[walls]
     normal[walls] = towards_wall(box, wall, seen.centre[walls])
     gap[walls] = wall_distance(box, wall, seen.plate_z[seen.scan[walls]], seen.centre[walls]) - at_wall
-    # Inside a cylinder 1/R* is the geometric mean of both directions (Johnson 1985, section 4.2).
-    curved = (wall == Wall.x_min) & box.is_cylinder
-    reduced_radius[walls] = at_wall / np.sqrt(1 - np.where(curved, at_wall / (box.size_x / 2), 0))
+    reduced_radius[walls] = reduced_radius_at(box, wall, at_wall)
 
     normal_force = -np.einsum("ij,ij->i", seen.force, normal)
     tangential = seen.force + normal_force[:, np.newaxis] * normal
-    modulus = np.where(walls, _reduced_modulus(seen.material, True), _reduced_modulus(seen.material, False))
+    modulus = np.where(walls, reduced_modulus(seen.material, True), reduced_modulus(seen.material, False))
     size = 3 * np.abs(normal_force) / (4 * modulus * reduced_radius**2)
     implied = np.copysign(np.cbrt(size * size), normal_force)
     return ContactResiduals(normal, normal_force, lengths(tangential), reduced_radius, implied,
                             -gap / reduced_radius, _cross_contact(seen, normal, normal_force) / reduced_radius)
 
 
-def _reduced_modulus(material: Material, wall: bool) -> float:
+def reduced_radius_at(box: Box, wall: Ints, radius: Floats) -> Floats:
+    """(C,) R* of grains of these radii at these walls [m]. Inside a cylinder 1/R* is the geometric mean of both directions (Johnson 1985,
+    section 4.2)."""
+    curved = (wall == Wall.x_min) & box.is_cylinder
+    reduced: Floats = radius / np.sqrt(1 - np.where(curved, radius / (box.size_x / 2), 0))
+    return reduced
+
+
+def reduced_modulus(material: Material, wall: bool) -> float:
     """E* of two grains, or of a grain and a wall [Pa]."""
     grain = (1 - material.poisson_ratio**2) / material.youngs_modulus
     return 1 / (grain + ((1 - material.wall_poisson_ratio**2) / material.wall_youngs_modulus if wall else grain))

@@ -4,6 +4,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from ..experiment.plate import scan_places
 from ..results.names import Phase
@@ -13,6 +14,7 @@ from .observables import observables
 
 PHASES = Phase.load, Phase.unload
 PARTS_OF_STROKE = 0.42, 0.61, 0.80, 0.98
+EARLY = 0.15  # over the stroke: hardly any grains overlap clearly before
 WIDTH_OF_STROKE = 0.12
 SCANS_IN_WIDTH = 1.6  # over which scans are smoothed, on each side of a displacement
 
@@ -77,8 +79,22 @@ def grid_of(recording: Recording) -> Grid:
     held = Grid([], 0, 0, holds=holds).is_held(len(scans))
     loading = np.count_nonzero((scans.phase == Phase.load) & ~held)
     spacing = stroke * (max(scans.cycle, default=0) + 1) / max(1, loading)
-    grid = replace(grid_of_stroke(stroke, spacing), holds=holds)
+    grid = _at_tomographs(recording, replace(grid_of_stroke(stroke, spacing), holds=holds))
     return _with_forces(recording, grid) if _sets_forces(recording) else grid
+
+
+def _at_tomographs(recording: Recording, grid: Grid) -> Grid:
+    """Without contact forces and with the positions of grains in few of the frames of loading, displacements are those of the nearest of these,
+    one each: between frames nothing is known of grains."""
+    scans = recording.scans
+    loads = (scans.phase == Phase.load) & ~grid.is_held(len(scans)) & (recording.displacement > EARLY * grid.stroke)
+    seen = loads & np.array([len(at) > 0 for at in scans.position], bool)
+    if not seen.any() or any(map(len, scans.contacts)) or (seen == loads).all():
+        return grid
+    there, places = np.unique(recording.displacement[seen]), np.array(grid.displacement)
+    old, new = linear_sum_assignment(np.abs(places[:, np.newaxis] - there))
+    places[old] = there[new]
+    return replace(grid, displacement=sorted(places.tolist()))
 
 
 def _sets_forces(recording: Recording) -> bool:

@@ -2,12 +2,13 @@
 
 Global ones describe the packing. Conditional ones take the measured positions as given and compare each contact's force with the model; they
 average over thousands of contacts and are not affected by chaotic rearrangements.
-A new one is a function in force_observables.py, position_observables.py or overlap_observables.py.
+Those of grains alone are compared only where no contact forces were measured.
+A new one is a function in force_observables.py, position_observables.py, overlap_observables.py or grain_observables.py.
 """
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from ..results.recording import Floats
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from .seen_scans import SeenScans
 
     Function = Callable[[SeenScans], Floats | tuple[Floats, ...]]  # (scans,) of each observable; NaN where a scan does not determine it
+    OneFunction = TypeVar("OneFunction", bound=Function)
 
 MIN_CONTACTS = 60  # scans with fewer contacts determine only the force on the plate
 
@@ -22,7 +24,7 @@ MIN_CONTACTS = 60  # scans with fewer contacts determine only the force on the p
 @dataclass(frozen=True)
 class Observable:
     name: str
-    needs: str  # plate, contacts, positions (and contacts), programme
+    needs: str  # plate, contacts, positions (and contacts), grains (without contact forces), programme
     resolution: float  # smaller differences are ignored: numerics, damping, drift of the instrument
     region: str  # part of the packing; empty: all
     force_class: str  # class of forces; empty: all
@@ -48,10 +50,10 @@ OF_PROGRAMMES = (
 )
 
 
-def observed(needs: str, *rows: tuple[str, float, str, str, str]) -> "Callable[[Function], Function]":
-    """Adds a function to the table. `needs`: contacts or positions. `rows`: name, resolution, region, class of forces and meaning of each
+def observed(needs: str, *rows: tuple[str, float, str, str, str]) -> "Callable[[OneFunction], OneFunction]":
+    """Adds a function to the table. `needs`: contacts, positions or grains. `rows`: name, resolution, region, class of forces and meaning of each
     array that it returns, in their order."""
-    def add(function: "Function") -> "Function":
+    def add(function: "OneFunction") -> "OneFunction":
         group = tuple(Observable(name, needs, *facts) for name, facts in ((row[0], row[1:]) for row in rows))
         _groups.append(Group(group, function))
         return function
@@ -60,9 +62,9 @@ def observed(needs: str, *rows: tuple[str, float, str, str, str]) -> "Callable[[
 
 @cache
 def groups() -> tuple[Group, ...]:
-    """In the order of their observables in an observation: those of contacts, then those of positions."""
-    from . import force_observables, overlap_observables, position_observables
-    files = [module.__name__ for module in (force_observables, position_observables, overlap_observables)]
+    """In the order of their observables in an observation: those of contacts, of positions, then of grains alone."""
+    from . import force_observables, grain_observables, overlap_observables, position_observables
+    files = [module.__name__ for module in (force_observables, position_observables, overlap_observables, grain_observables)]
     return tuple(sorted(_groups, key=lambda group: files.index(group.function.__module__)))
 
 

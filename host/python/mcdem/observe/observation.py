@@ -9,6 +9,7 @@ from .contact_residuals import Material
 from .grid import PHASES, Grid, grid_of, offsets
 from .observables import MIN_CONTACTS, groups, index_of, observables
 from .seen_scans import SeenScans
+from .touching import with_hertz_contacts
 
 MIN_BINS = 4  # that an experiment and its simulations must have in common
 LEAST_WEIGHT = 0.3  # of the scans around a displacement, each of which has at most 1
@@ -47,12 +48,14 @@ def scan_observables(recording: Recording, numbers: "Sequence[int] | Ints", mate
     values = np.full((len(numbers), len(observables())), np.nan)
     top = scans.top_force[numbers]
     values[:, 0] = np.log(np.where(top > 0, top, np.nan))
-    with_contacts = [k for k, number in enumerate(numbers) if len(scans.contacts[number]) >= MIN_CONTACTS]
+    contacts = [scans.contacts[number] for number in numbers]
+    with_contacts = [k for k, one in enumerate(contacts) if len(one) >= MIN_CONTACTS and not np.isnan(one.force[0, 0])]
     with_positions = [k for k in with_contacts if len(scans.position[numbers[k]])]
     seen = {"contacts": SeenScans(recording, [numbers[k] for k in with_contacts], material)}
     seen["positions"] = (seen["contacts"] if with_contacts == with_positions
                          else SeenScans(recording, [numbers[k] for k in with_positions], material))
-    rows, column = {"contacts": with_contacts, "positions": with_positions}, 1
+    seen["grains"], with_grains = _grains_alone(recording, numbers, material)
+    rows, column = {"contacts": with_contacts, "positions": with_positions, "grains": with_grains}, 1
     with np.errstate(divide="ignore", invalid="ignore"):
         for group in groups():
             needs, width = group.observables[0].needs, len(group.observables)
@@ -61,6 +64,15 @@ def scan_observables(recording: Recording, numbers: "Sequence[int] | Ints", mate
                 values[rows[needs], column:column + width] = np.column_stack(found if isinstance(found, tuple) else (found,))
             column += width
     return values
+
+
+def _grains_alone(recording: Recording, numbers: "Sequence[int] | Ints", material: Material) -> tuple[SeenScans, list[int]]:
+    """The scans of which grains are compared without their forces, with the contacts of touching.py, and their places in `numbers`."""
+    scans, how = recording.scans, material.grains_alone
+    rows = [k for k, number in enumerate(numbers) if how and len(scans.position[number]) and (not how.listed or len(scans.contacts[number]))]
+    touching = with_hertz_contacts(recording, [int(numbers[k]) for k in rows], material)
+    rows = [k for k in rows if len(touching.scans.contacts[numbers[k]]) >= MIN_CONTACTS]
+    return SeenScans(touching, [int(numbers[k]) for k in rows], material), rows
 
 
 def _holds(recording: Recording, grid: Grid, discard: int) -> tuple[Floats, Floats]:

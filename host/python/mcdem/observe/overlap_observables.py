@@ -1,11 +1,12 @@
 """Observables of the difference between implied and measured overlaps, between grains and at walls."""
 import numpy as np
 
-from ..experiment.container import apart, into_cell, lengths
+from ..experiment.container import apart, lengths
 from ..results.names import Wall
 from ..results.recording import Bools, Floats, Ints
 from .observables import observed
 from .seen_scans import SeenScans
+from .touching import near_grains
 
 CLEAR_OVERLAP = 0.02  # over R*; smaller ones are not significant compared with errors of positions
 ROWS_PER_TERM = 5  # a regression with fewer has no result
@@ -30,18 +31,11 @@ def _key(scan: Ints, i: Ints, j: Ints, count: int) -> Ints:
 
 
 def _overlapping(seen: SeenScans) -> tuple[Ints, Ints, Ints]:
-    """Scan and grains of all pairs that overlap clearly. One tree has the grains of all scans, far apart from one another along z."""
-    from scipy.spatial import cKDTree  # pages, which list the observables, do without it
-    count, box, largest = len(seen.diameter), seen.box, float(seen.diameter.max())
-    position = into_cell(box, seen.position.reshape(-1, 3))
-    step = np.ptp(position[:, 2]) + 2 * largest
-    position[:, 2] += step * np.repeat(np.arange(len(seen)), count)
-    size = [box.size_x, box.size_y, 0] if box.is_periodic else None
-    pairs = cKDTree(position, boxsize=size).query_pairs(largest, output_type="ndarray")
-    scan, (i, j) = pairs[:, 0] // count, pairs.T % count
+    """Scan and grains of all pairs that overlap clearly."""
+    scan, i, j = near_grains(seen.box, seen.position, float(seen.diameter.max()))
     a, b = seen.diameter[i], seen.diameter[j]
     reach = 0.5 * (a + b) - CLEAR_OVERLAP * 0.5 * a * b / (a + b)
-    near = lengths(apart(box, seen.position[scan, i], seen.position[scan, j])) < reach
+    near = lengths(apart(seen.box, seen.position[scan, i], seen.position[scan, j])) < reach
     return scan[near], i[near], j[near]
 
 

@@ -1,7 +1,7 @@
 """Observables of contact forces and positions: load through sections, directions, gradients, displacements, friction."""
 import numpy as np
 
-from ..experiment.container import lengths
+from ..experiment.container import apart, lengths
 from ..results.names import Wall
 from ..results.recording import Bools, Floats
 from .observables import observed
@@ -43,12 +43,20 @@ def non_affine(seen: SeenScans) -> Floats:
     before = seen.recording.scans.position[0]
     if before.shape != seen.position.shape[1:] or not np.isfinite(before).all() or not np.isfinite(seen.position).all():
         return np.full(len(seen), np.nan)
-    grains = len(before)
-    moved = (seen.position - before).transpose(1, 0, 2).reshape(grains, -1)
-    columns = np.column_stack([before, np.ones(grains)])
-    left = moved - columns @ np.linalg.lstsq(columns, moved, rcond=None)[0]
-    root: Floats = np.sqrt((left**2).reshape(grains, len(seen), 3).sum(axis=(0, 2)) / grains)
+    root: Floats = np.sqrt((affine_map(seen, before)[1]**2).sum(axis=(1, 2)) / len(before))
     return root / float(seen.diameter.mean())
+
+
+def affine_map(seen: SeenScans, before: Floats) -> tuple[Floats, Floats]:
+    """The best affine map of the displacements of all grains since they were at `before` (N, 3): their gradients (S, 3, 3), the last axis that of
+    the position; and the displacements minus the map (S, N, 3) [m]."""
+    grains, box = len(before), seen.box
+    moved = apart(box, np.broadcast_to(before, seen.position.shape).reshape(-1, 3), seen.position.reshape(-1, 3))
+    moved = moved.reshape(len(seen), grains, 3).transpose(1, 0, 2).reshape(grains, -1)
+    columns = np.column_stack([before, np.ones(grains)])
+    found = np.linalg.lstsq(columns, moved, rcond=None)[0]
+    left = (moved - columns @ found).reshape(grains, len(seen), 3)
+    return found[:3].reshape(3, len(seen), 3).transpose(1, 2, 0), left.transpose(1, 0, 2)
 
 
 @observed("positions", ("attraction", 0.001, "", "weak", "fraction of the contacts that pull"))

@@ -68,6 +68,11 @@ class SeenScans:
         return np.concatenate([self.recording.scans.contacts[k].force for k in self.numbers])
 
     @cached_property
+    def overlap(self) -> Floats:
+        """(C,) [m]; NaN in measured data."""
+        return np.concatenate([self.recording.scans.contacts[k].overlap for k in self.numbers])
+
+    @cached_property
     def magnitude(self) -> Floats:
         """(C,) of the force [N]."""
         return lengths(self.force)
