@@ -84,7 +84,7 @@ TEST_F(CliTest, ValidateSummarisesTheRun) {
     EXPECT_THAT(validated.out,
                 testing::ContainsRegex("the packing is 0.0[0-9]+ m high when generated; the plate "
                                        "starts at 0.[0-9]+ m, and at 0.[0-9]+ m finds "));
-    EXPECT_THAT(validated.out, testing::ContainsRegex("about .* grain-steps, .* (usual for such a device"));
+    EXPECT_THAT(validated.out, testing::ContainsRegex("about .* grain-steps, .* \\(usual for such a device"));
     const auto measured = mcdem({"validate", "small.toml", "--estimate"});
     expect_done(measured);
     EXPECT_THAT(measured.out, HasSubstr(" million per second (measured now)"));
@@ -98,7 +98,7 @@ TEST_F(CliTest, ARunThatExceedsTheDeviceIsRefusedBeforeItStarts) {
     const std::vector<std::vector<std::string>> too_much{
         {"--set", "packing.count=1000000", "--set", "numerics.slots=64", "--set",
          "packing.diameter_min=1.9e-4", "--set", "packing.diameter_mean=2e-4", "--set",
-         "packing.diameter_sd=1e-5", "--set", "packing.diameter_max=2.1e-4"},
+         "packing.diameter_sd=1e-5", "--set", "packing.diameter_max=2.1e-4", "--set", "plate.end=1e-3"},
         {"--set", "plate.speed=1e-12"},
         {"--set", "plate.start=4", "--set", "packing.diameter_min=1e-3"}};
     const char* reasons[] = {"memory", "steps", "numerics.precision must be double"};

@@ -16,14 +16,27 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "importing"))
 import numpy as np  # noqa: E402
 from lab import ImportCase  # noqa: E402
 
+import mcdem  # noqa: E402
+from mcdem.experiment.read import read_experiment  # noqa: E402
+from mcdem.experiment.sample import part_of  # noqa: E402
+from mcdem.experiment.settings import parse_settings  # noqa: E402
 from mcdem.importing.mapping import Known  # noqa: E402
 from mcdem.importing.record import picture_of  # noqa: E402
+from mcdem.problems import Problems  # noqa: E402
 
 ZWICK, TOLERANCE = FOLDER / "gelatin_gel_zwick", 0.02
 # Of the table of trials: depth [mm], speed [mm/s] and hold [s]. The speed of the first record 3 was reached, in 1 mm, only nearly.
 TRIALS = {"2025-06-16_1": (1, 1, 10), "2025-06-16_2": (1, 1, 10), "2025-06-16_3": (1, 5, 10), "2025-06-16_5": (3, 1, 10), "2025-06-16_6": (3, 1, 10),
           "2025-06-16_9": (5, 1, 10), "2025-06-16_12": (7, 1, 10), "2025-06-16_18": (7, 5, 10), "2025-06-16_24": (10, 5, 10), "2025-06-19_1": (1, 1, 60),
           "2025-06-19_2": (1, 1, 60), "2025-06-19_3": (1, 1, 60)}
+
+
+PART = """name = "part"
+container = {{shape = "periodic", size_x = 4.5e-4, size_y = 4.5e-4}}
+contact = {{model = "independent"}}
+packing = {{count = 150, diameter_mean = 1e-4, diameter_sd = 1e-5, diameter_min = 0.8e-4, diameter_max = 1.2e-4, packing_fraction = {fraction}}}
+plate = {{start = {start}, end = 6e-4}}
+"""
 
 
 class Real(ImportCase):
@@ -101,6 +114,36 @@ class Curves(Real):
         for file in ("mcc_avicel_ph102/c-cap-table.txt", "mcc_avicel_ph102/frc_mg.txt", "mcc_avicel_ph102/c-elastic-table.txt", "mercurydpm_powder/CVDFMCC.csv"):
             with self.subTest(file):
                 self.expect_among(self.unclear(self.tables_of(file, box=(0.04, 0.04), plate_start=0.02)), "role must be confirmed")
+
+
+class Samples(Real):
+    """The bed of a powder and an oedometer as [sample]: a periodic part has the measured stresses at the measured strains."""
+
+    def part(self, settings, tables, plate_start, fraction):
+        problems = Problems()
+        sample = parse_settings(settings.encode(), "experiment.toml", (), problems)
+        problems.report()
+        self.assertAlmostEqual(sample.sample.packing_fraction, fraction, places=4)
+        rows = self.imported(tables).plate
+        folder = pathlib.Path(self.folder, "lab")
+        folder.mkdir()
+        (folder / "experiment.toml").write_text(settings)
+        lines = [f"{n},{rows.cycle[n]},{rows.phase[n]},{rows.plate_z_m[n]},{rows.top_force_N[n]}" for n in range(len(rows.plate_z_m))]
+        (folder / "plate.csv").write_text("\n".join(["frame,cycle,phase,plate_z_m,top_force_N", *lines]) + "\n")
+        scene = mcdem.Scene.parse(PART.format(start=plate_start, fraction=fraction))
+        return part_of(read_experiment(folder), scene).recording
+
+    def test_the_bed_of_a_powder(self):
+        tables = self.tables_of("mercurydpm_powder/carrier_bed_compression.csv", box=(0.025, 0.025), shape="cylinder")
+        part = self.part("[sample]\nheight = 0.019\ndiameter = 0.025\nmass = 8.1293e-3\nsolid_density = 1452.7\n", tables, 6.7577e-4, 0.6)
+        np.testing.assert_allclose(part.scans.top_force[:2] / 4.5e-4**2, [4790.42, 5763.35], rtol=1e-6)
+        np.testing.assert_allclose((part.plate_start - part.scans.plate_z[:2]) / (part.plate_start - 1e-5), [1 - 0.0185328 / 0.019, 1 - 0.0184762 / 0.019], rtol=1e-6)
+
+    def test_an_oedometer(self):
+        tables = self.tables_of("grainlearn_glass_bead_oedometer/obsdata.dat", box=(0.04, 0.04), plate_start=0.02)
+        accepted = self.by_mapping(self.accepted(tables, ('force_unit = "kPa"', 'force_unit = "MPa"')))
+        part = self.part("[sample]\nheight = 0.02\narea = 1.6e-3\npacking_fraction = 0.608941\n", accepted, 6.66e-4, 0.608941)
+        self.assertAlmostEqual(part.scans.top_force[0] / 4.5e-4**2, 1e6 * (5.5873 + 2 / 3 * 1.79062), delta=100)
 
 
 class Tomography(Real):

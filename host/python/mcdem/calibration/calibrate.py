@@ -26,7 +26,7 @@ def calibrate(scene: "Scene", reference: "Run | Path", *, setting: str = "", dis
     `compare`: names of the quantities that are compared, by default all. `progress(fraction)` is called repeatedly. Raises ValueError,
     RuntimeError.
     """
-    chosen = reference_setting(reference, setting, discard)
+    chosen = reference_setting(reference, setting, discard, scene=scene)
     if fit:
         wanted = FitOptions(fit, compare, model or "", tolerance, batch, rounds, device)
         fitted = fit_scene(scene, chosen.replicas, wanted, progress or (lambda _: None), lambda _: None)

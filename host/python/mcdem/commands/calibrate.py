@@ -82,8 +82,8 @@ def run(options: argparse.Namespace) -> int:
     if options.compare:
         raise InputError("--compare: is an option of --fit")
     wanted = Options(calibrated_model(options.model or "mc_dem", "--model"), SearchOptions(**given(options, SEARCH)), options.device)
-    reference = load_reference(options.experiment, options.setting, options.discard)
     scene = read_scene(options)
+    reference = load_reference(options.experiment, options.setting, options.discard, scene=scene)
     with contextlib.ExitStack() as stack:
         if options.out:
             file = stack.enter_context(output_folder(options.out)) / "calibration.json"
@@ -110,8 +110,8 @@ def _fit(options: argparse.Namespace) -> int:
     from ..outputs import CALIBRATION, expect_replaceable, output_folder, remove_temporaries
     from ..report.scene_fit import fit_text, round_text
     from .rounds import kept_words, told_and_kept
-    reference = load_reference(options.experiment, options.setting, options.discard)
     scene = read_scene(options)
+    reference = load_reference(options.experiment, options.setting, options.discard, scene=scene)
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(output_folder(options.out)) if options.out else None
         file = folder / "calibration.json" if folder else None

@@ -63,8 +63,8 @@ def run(options: argparse.Namespace) -> int:
     from .rounds import kept_words, told_and_kept
     if not options.experiment and not options.target:
         raise InputError("--target: is required without --experiment, as in --target top_force=15.5")
-    reference = load_reference(options.experiment, options.setting, options.discard) if options.experiment else None
     scene = read_scene(options)
+    reference = load_reference(options.experiment, options.setting, options.discard, scene=scene) if options.experiment else None
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(output_folder(options.out)) if options.out else None
         file = folder / "what_if.json" if folder else None

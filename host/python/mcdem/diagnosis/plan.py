@@ -11,6 +11,7 @@ from .. import _engine as engine
 from ..errors import InputError
 from ..experiment.experiment import Experiment
 from ..experiment.instrument import Instrument
+from ..experiment.sample import part_of
 from ..observe.contact_residuals import GrainsAlone
 from ..observe.grid import Grid, grid_of
 from ..results.names import Phase
@@ -119,7 +120,10 @@ def plan_of(scene: engine.Scene, measured: Sequence[Experiment], candidates: Seq
     engine.expect_plate(scene, "a diagnosis")
     if len(scene) > 1:
         note(f"the scene has {len(scene)} replicas; the first one is diagnosed: {scene.labels[0]}")
-    experiments = [_compared_cycles(scene, one) for one in measured]
+    experiments = [_compared_cycles(scene, part_of(one, scene)) for one in measured]
+    for one in measured:
+        if one.sample is not None:
+            note(f"{one.name}: its [sample] is compared with a part of {scene._values['plate.start']:.4g} m height: equal strains and stresses")
     for one in experiments:
         if not len(one.recording.scans):
             raise InputError(f"{one.name}: cycles in plate.csv must count from 0, got none below protocol.cycles")
@@ -139,7 +143,7 @@ def plan_of_others(scene: engine.Scene, measured: Experiment, packings: int, can
                    seed: int) -> Plan:
     """Simulations of `packings` others of the same kind, for a library that several experiments share."""
     engine.expect_plain_strokes(scene, "a challenge")
-    experiment = _compared_cycles(scene, measured)
+    experiment = _compared_cycles(scene, part_of(measured, scene))
     if not experiment.recording.has_start:
         drawn = _drawn(scene, experiment, packings * replicates, seed, 0)
         return _filled([experiment], [drawn], grid_of(experiment.recording), candidates, packings * replicates, packings * pairs, seed, False)

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..number_text import shortest
 from ..results.recording import Ints, Recording
+from .sample import Sample
 
 # The scene keys that `materials` may contain, and those of `uncertainty`.
 MATERIALS = ("grains.youngs_modulus", "grains.poisson_ratio", "grains.excess_density", "grains.friction", "grains.restitution",
@@ -45,6 +46,7 @@ class Experiment:
     plate_speed: float | None = None  # [m/s]; None: slow
     plate_pause: float = 0.0  # the plate stands for this time at each scan [s]; 0: it does not stop
     plate_hold: float = 0.0  # .. at the lowest position [s]
+    sample: Sample | None = None  # of any size, of which simulations are a part
     topology: Ints = field(default_factory=lambda: np.zeros((0, 3), int))  # (N, 3) contacts without forces: frame, grain, partner
 
     @property

@@ -21,6 +21,7 @@ from ..results.run_file import no_scans
 from ..toml import value_text
 from ..toml_lines import Document, TomlError, Where
 from .experiment import MATERIALS, UNCERTAIN, Experiment, Measurement
+from .sample import Sample
 
 LONGEST_KEY = 1000  # in --set
 LARGEST_BOX = 20  # [m]; a larger one was given in millimetres
@@ -51,6 +52,14 @@ class Limits:
 STIFFNESS, FRICTION, DURATION = Limits(0, 1e13, "Pa", above=True), Limits(0, 10), Limits(0, 1e6, "s")
 LIMITS = {
     "container.radius": Limits(0, LARGEST_BOX / 2, "m", above=True),
+    "sample.height": Limits(0, 100, "m", above=True),
+    "sample.diameter": Limits(0, LARGEST_BOX, "m", above=True),
+    "sample.area": Limits(0, LARGEST_BOX**2, "m2", above=True),
+    "sample.mass": Limits(0, 1e6, "kg", above=True),
+    "sample.solid_density": Limits(0, 1e5, "kg/m3", above=True),
+    "sample.packing_fraction": Limits(0, 1, above=True),
+    "sample.wall_friction": FRICTION,
+    "sample.lateral_ratio": Limits(0, 2, above=True),
     "plate.start": Limits(0, 100, "m", above=True),
     "plate.speed": Limits(0, 1000, "m/s", above=True),
     "plate.pause": DURATION,
@@ -150,8 +159,9 @@ class _Reader:
             name = stated if isinstance(stated, str) else ""
             if not isinstance(stated, str):
                 self.problem(("name",), "name must be a text")
-        box = self.box()
         start, speed = self.number("plate.start"), self.number("plate.speed")
+        sample = self.sample(start)
+        box, start = (sample[1], sample[2]) if sample else (self.box(), start)
         pause, hold = (self.number(key) or 0.0 for key in ("plate.pause", "plate.hold"))
         materials, uncertainty = dict[str, float](), dict[str, float]()
         for key in MATERIALS:  # in alphabetical order
@@ -164,7 +174,8 @@ class _Reader:
         errors = Measurement(*(self.number(f"measurement.{error}") or 0.0 for error in names))
         parameters = {key: shortest(value) for key, value in materials.items()} | self.programme(box, start)
         self.report_unknown(self.document.root)
-        return Experiment(name, _without_scans(name, parameters, box, start), materials, uncertainty, errors, speed, pause, hold)
+        return Experiment(name, _without_scans(name, parameters, box, start), materials, uncertainty, errors, speed, pause, hold,
+                          sample[0] if sample else None)
 
     def problem(self, where: Where, what: str) -> None:
         line = self.document.lines.get(where)
@@ -186,6 +197,30 @@ class _Reader:
         for name in (key, last) if group == "grains" else (key,):
             if (sigma := self.number(f"uncertainty.{name}", Limits(0, 1e15, LIMITS[key].unit))) is not None:
                 yield sigma
+
+    def sample(self, start: float | None) -> tuple[Sample, Box, float | None] | None:
+        """[sample], if there is one, the container that it means, and its height."""
+        stated = self.document.at(("sample",))
+        if stated is None:
+            return None
+        names = "height", "diameter", "area", "mass", "solid_density", "packing_fraction", "wall_friction", "lateral_ratio"
+        height, diameter, area, mass, density, fraction, friction, ratio = (self.number(f"sample.{name}") for name in names)
+        wrong = [(start is not None) == (height is not None) and "height [m] at no strain, or plate.start, and not both",
+                 (diameter is None) == (area is None) and "diameter [m] or area [m2] of its cross-section, and not both",
+                 (mass is None) != (density is None) and "mass with solid_density, the density of the grains' material, or neither",
+                 mass is not None and fraction is not None and "packing_fraction, or mass and solid_density, and not both",
+                 any(self.document.at((table,)) is not None for table in ("box", "container")) and "the container: leave [box] and [container] out"]
+        self.known.update(f"{table}.{key}" for table, key in (("box", "size"), ("container", "shape"), ("container", "radius")))
+        for what in filter(None, wrong):
+            self.problem(("sample",), f"[sample] must state {what}")
+        wide, tall = (diameter or math.sqrt(4 * (area or 1) / math.pi)), height or start or 1.0
+        section = area or math.pi / 4 * wide**2
+        if mass is not None and density is not None:
+            fraction = mass / (density * section * tall)
+            if fraction > 1:
+                self.problem(("sample",), f"[sample] must leave a packing fraction of at most 1, got {fraction:.4g} of mass, solid_density and size")
+        found = Sample(section, math.nan if fraction is None else fraction, friction or 0.0, ratio or Sample.lateral_ratio)
+        return found, Box(wide, wide, ContainerShape.cylinder), height or start
 
     def box(self) -> Box:
         where = "container", "shape"
@@ -288,6 +323,9 @@ def _tables(experiment: Experiment) -> dict[str, dict[str, str]]:
     tables = {group: {key: _number(value) for key, value in values.items()}
               for group, values in {**materials, **sigmas, "plate": plate, "measurement": asdict(experiment.measurement)}.items()}
     box = experiment.recording.box
+    if (sample := experiment.sample) is not None:
+        stated = {key: value for key, value in asdict(sample).items() if math.isfinite(value)}
+        return tables | {"sample": {key: _number(value) for key, value in stated.items()}}
     if box.shape != ContainerShape.box:
         tables["container"] = {"shape": _text(box.shape)}
     if box.is_cylinder:

@@ -15,25 +15,27 @@ if TYPE_CHECKING:
     from .. import _engine
 
 
-def load_reference(paths: Sequence[str], setting: str = "", discard: int = 0, contacts: bool = False) -> Setting:
+def load_reference(paths: Sequence[str], setting: str = "", discard: int = 0, contacts: bool = False,
+                   scene: "_engine.Scene | None" = None) -> Setting:
     """All replicas of experiment folders, result folders or files as one setting.
 
-    Metrics ignore the first `discard` cycles of an experiment. `setting`: of a run with several; default: mc_dem, if it exists.
-    Raises InputError, RunError.
+    Metrics ignore the first `discard` cycles of an experiment. `setting`: of a run with several; default: mc_dem, if it exists. `scene`: of the part
+    of an experiment's [sample]. Raises InputError, RunError.
     """
-    runs = [read_reference(path, discard, contacts) for path in paths]
+    runs = [read_reference(path, discard, contacts, scene) for path in paths]
     settings = [Setting(run.name, run.recordings) if _is_measured(path) else chosen_setting(run, setting, path, "--setting")
                 for path, run in zip(paths, runs, strict=True)]
     replicas: list[Recording] = [replica for one in settings for replica in one.replicas]
     return Setting(", ".join(one.label for one in settings), tuple(replicas))
 
 
-def reference_setting(reference: "_engine.Run | Run | Path", setting: str = "", discard: int = 0, contacts: bool = False) -> Setting:
+def reference_setting(reference: "_engine.Run | Run | Path", setting: str = "", discard: int = 0, contacts: bool = False,
+                      scene: "_engine.Scene | None" = None) -> Setting:
     """What a function of the package gets as its reference: a run, or the path of a result or an experiment.
 
     Arguments as of load_reference. Raises TypeError for anything else, InputError, RunError.
     """
-    run = read_reference(reference, discard, contacts) if isinstance(reference, (str, os.PathLike)) else _run_of(reference)
+    run = read_reference(reference, discard, contacts, scene) if isinstance(reference, (str, os.PathLike)) else _run_of(reference)
     return chosen_setting(run, setting, run.name, "setting")
 
 
@@ -45,13 +47,14 @@ def _run_of(reference: "_engine.Run | Run") -> Run:
     return run_of(reference)
 
 
-def read_reference(path: Path, discard: int = 0, contacts: bool = False) -> Run:
+def read_reference(path: Path, discard: int = 0, contacts: bool = False, scene: "_engine.Scene | None" = None) -> Run:
     """A result folder or file, or an experiment as a run of one recording. Raises InputError, RunError."""
     folder = os.fspath(path)
     if not _is_measured(folder):
         return read_run(folder, contacts=contacts)
     from ..experiment.read import read_experiment
-    experiment = read_experiment(folder)
+    from ..experiment.sample import part_of
+    experiment = part_of(read_experiment(folder), scene)
     recording = experiment.recording
     recording = replace(recording, parameters=recording.parameters | {DISCARD: str(discard),
                                                                       THRESHOLD: shortest(experiment.measurement.force_threshold)})
