@@ -24,14 +24,13 @@ void write_file(NewFile& out, const Checkpoint& checkpoint) {
     file.set_attribute("/checkpoint", "fields",
                        std::vector<long>{static_cast<long>(checkpoint.fields.size())});
     file.write_texts("/checkpoint/scene", {checkpoint.scene_text});
-    const h5::Handle byte = h5::number_type<unsigned char>();
     for (const auto& [name, bytes] : checkpoint.fields) {
         if (name.empty() || name.find('/') != std::string::npos)
             throw RunError(out.place().string() + ": checkpoint field '" + name + "' cannot be a name");
         // Uncompressed: floating-point state hardly compresses, and a checkpoint must not delay the run.
-        h5::Dataset table =
-            file.create_rows("/checkpoint/fields/" + name, byte, {}, h5::Storage::plain, bytes.size());
-        table.append(byte, bytes.data(), bytes.size());
+        h5::NewTable table(file, "/checkpoint/fields/" + name, h5::number_type<unsigned char>(), {},
+                           h5::Storage::plain);
+        table.append(bytes.data(), bytes.size());
         table.close();
     }
     file.close();

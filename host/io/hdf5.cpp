@@ -9,7 +9,6 @@
 namespace mcdem::inline io::h5 {
 namespace {
 
-constexpr hsize_t chunk_bytes = 32 * 1024;
 // Deflate compresses at most 1032:1. A table that claims more than its file can contain is damaged, and no
 // memory is allocated for it.
 constexpr double max_bytes_per_byte = 1100;
@@ -151,16 +150,16 @@ std::size_t Dataset::values_in(hsize_t rows) const {
     return static_cast<std::size_t>(rows);
 }
 
-void Dataset::write_rows(hid_t memory_type, const void* data, hsize_t rows) {
-    if (rows == 0) return;
+void Dataset::set_rows(hsize_t rows) {
     Extent size = extent();
-    const hsize_t first = size.front();
-    size.front() += rows;
-    if (H5Dset_extent(id_, size.data()) < 0) fail("cannot grow");
     size.front() = rows;
-    const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
-    const Handle file = select(first, rows);
-    if (H5Dwrite(id_, memory_type, memory, file, transfer(size, memory_type), data) < 0 ||
+    if (H5Dset_extent(id_, size.data()) < 0) fail("cannot grow");
+}
+
+void Dataset::write_chunk(hsize_t first, std::span<const std::byte> stored) {
+    Extent begin(extent().size(), 0);
+    begin.front() = first;
+    if (H5Dwrite_chunk(id_, H5P_DEFAULT, 0, begin.data(), stored.size(), stored.data()) < 0 ||
         file_->error() != 0)
         fail("cannot be written");
 }
@@ -231,7 +230,7 @@ void File::make_group(const std::string& object) {
     for (std::size_t end = 0; end != std::string::npos;) {
         end = object.find('/', end + 1);
         const std::string group = object.substr(0, end);
-        if (!exists(group))
+        if (groups_.insert(group).second)
             close_written(checked(H5Gcreate2(id_, group.c_str(), H5P_DEFAULT, layout, H5P_DEFAULT), H5Gclose,
                                   *below_, where(group), "cannot be created"),
                           group);
@@ -271,33 +270,26 @@ std::vector<std::string> File::members(const std::string& group) const {
     return names;
 }
 
-Dataset File::create_rows(const std::string& object, hid_t file_type, const Extent& row, Storage storage,
-                          hsize_t rows_expected) {
-    Extent now{0}, most{H5S_UNLIMITED}, chunk{1};
-    hsize_t bytes = std::max<hsize_t>(H5Tget_size(file_type), 1);
-    for (hsize_t n : row) {
-        now.push_back(n);
-        most.push_back(n);
-        chunk.push_back(n);
-        bytes *= n;
-    }
-    const hsize_t wanted = storage == Storage::plain ? 1024 * 1024 : chunk_bytes;
-    chunk.front() = std::max<hsize_t>(wanted / bytes, 1);
-    if (rows_expected > 0) chunk.front() = std::min(chunk.front(), rows_expected);
+Dataset File::create_table(const std::string& object, hid_t type, const Extent& now, const Extent& most,
+                           const Extent& chunk, Storage storage) {
     const Handle space(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), H5Sclose);
     if (const auto group = object.rfind('/'); group > 0) make_group(object.substr(0, group));
     const Handle layout = without_times(H5P_DATASET_CREATE);
     H5Pset_chunk(layout, static_cast<int>(chunk.size()), chunk.data());
     if (storage == Storage::compressed) {
         H5Pset_shuffle(layout);
-        H5Pset_deflate(layout, deflate_level);
+        H5Pset_deflate(layout, 1);  // the level of chunks that others write; ours are filtered by NewTable
     }
     H5Pset_fletcher32(layout);
-    Dataset table(checked(H5Dcreate2(id_, object.c_str(), file_type, space, H5P_DEFAULT, layout, H5P_DEFAULT),
-                          H5Dclose, *below_, where(object), "cannot be created"),
-                  *below_, where(object));
-    if (storage == Storage::compressed) table.filter_chunks(chunk.front());
-    return table;
+    return {checked(H5Dcreate2(id_, object.c_str(), type, space, H5P_DEFAULT, layout, H5P_DEFAULT), H5Dclose,
+                    *below_, where(object), "cannot be created"),
+            *below_, where(object)};
+}
+
+void File::link(const std::string& object, const std::string& name) {
+    if (H5Lcreate_hard(id_, object.c_str(), id_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT) < 0 ||
+        below_->error() != 0)
+        fail(where(name), "cannot be written");
 }
 
 void File::expect_inside(const std::string& object) const {

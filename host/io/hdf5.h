@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -71,13 +73,7 @@ Handle text_type(std::size_t length);
 /// library.
 [[noreturn]] void fail(const FileBelow& file, const std::string& where, const std::string& what);
 
-constexpr int deflate_level = 1;  // higher levels take five times as long for a few per cent
-
-/// The stored bytes of a chunk, filtered as by the library: shuffle, deflate, fletcher32. Its values have
-/// `value_size` bytes each. May be called in several threads.
-std::vector<std::byte> filtered(std::span<const std::byte> chunk, std::size_t value_size);
-
-/// A table that grows along its first dimension. Must not outlive its file.
+/// A table of rows. Must not outlive its file.
 class Dataset {
 public:
     Dataset(Handle id, const FileBelow& file, std::string where)
@@ -87,21 +83,19 @@ public:
     Handle type() const;
     const std::string& where() const { return where_; }
 
-    /// Appends `rows` rows, converted from `memory_type`.
-    void append(hid_t memory_type, const void* data, hsize_t rows);
     /// Reads rows first .. first + rows into `data`, converted to `memory_type`.
     void read(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const;
     template <class Number>
     std::vector<Number> read_all() const;
     /// Throws unless the dataset has `rank` dimensions and those after the first are `row`.
     void expect_row(const Extent& row) const;
-    /// For a compressed table that is written: whole chunks of so many rows are filtered on all cores (0: the
-    /// library filters all chunks). Deflating takes more than half of the time of writing, and the library
-    /// uses one core.
-    void filter_chunks(hsize_t rows) { chunk_rows_ = rows; }
     /// Reads all rows. Throws InputError if a checksum is wrong.
     void expect_whole() const;
-    /// For a table that was written: returns only if all of it is in the file, otherwise throws.
+    // For a table that is written:
+    void set_rows(hsize_t rows);
+    /// Writes the chunk that begins with row `first`, as it is stored.
+    void write_chunk(hsize_t first, std::span<const std::byte> stored);
+    /// Returns only if all of it is in the file, otherwise throws.
     void close();
     /// Throws like `h5::fail`.
     [[noreturn]] void fail(const std::string& what) const { h5::fail(*file_, where_, what); }
@@ -110,12 +104,9 @@ private:
     Handle select(hsize_t first, hsize_t rows) const;
     /// Number of values in `rows` rows.
     std::size_t values_in(hsize_t rows) const;
-    void write_rows(hid_t memory_type, const void* data, hsize_t rows);
-    void write_chunks(hid_t stored, const std::byte* data, hsize_t chunks);
     Handle id_;
     const FileBelow* file_;
     std::string where_;
-    hsize_t chunk_rows_ = 0;
 };
 
 class File {
@@ -133,10 +124,15 @@ public:
     /// Names of the objects in a group, sorted.
     std::vector<std::string> members(const std::string& group) const;
 
-    /// Creates a table whose rows have the extent `row` (empty: one value per row), and its parent groups.
-    /// With `rows_expected` a small table takes only the necessary space.
-    Dataset create_rows(const std::string& object, hid_t file_type, const Extent& row,
-                        Storage storage = Storage::compressed, hsize_t rows_expected = 0);
+    /// Creates a table, and its parent groups.
+    Dataset create_table(const std::string& object, hid_t type, const Extent& now, const Extent& most,
+                         const Extent& chunk, Storage storage);
+    /// Takes a whole chunk of rows of a table, which is written later: chunks are filtered together, on all
+    /// cores. Filters take most of the time of writing, and the library would use one core.
+    void add_chunk(class NewTable& table, std::vector<std::byte> bytes);
+    void write_chunks();
+    /// A second name of an object.
+    void link(const std::string& object, const std::string& name);
     Dataset dataset(const std::string& object) const;
     /// Names of all tables of the file.
     std::vector<std::string> tables() const;
@@ -180,6 +176,9 @@ private:
     std::unique_ptr<FileBelow> below_;  ///< used by id_ until it is closed
     std::filesystem::path path_;
     Handle id_;
+    std::set<std::string> groups_;                                            ///< that were made
+    std::vector<std::pair<class NewTable*, std::vector<std::byte>>> chunks_;  ///< not written yet
+    std::size_t chunk_bytes_ = 0;                                             ///< of these
 };
 
 template <class Number>
@@ -189,11 +188,40 @@ std::vector<Number> Dataset::read_all() const {
     return values;
 }
 
+/// A table of a file to which rows are appended, and which is created when its first chunk is complete or all
+/// rows are known. Chunks of all tables are written in the order in which they become complete. Must stay
+/// where it is after the first call of append().
+class NewTable {
+public:
+    /// Rows of the extent `row` (empty: one value per row), with values of `type`.
+    NewTable(File& file, std::string object, Handle type, Extent row, Storage storage = Storage::compressed);
+    /// Returns the end of the data.
+    const std::byte* append(const void* data, hsize_t rows);
+    /// Call after the last row, once.
+    void finish();
+    /// Returns only if all rows are in the file, otherwise throws. Calls finish() if necessary.
+    void close();
+
+private:
+    friend class File;
+    void create(hsize_t chunk_rows, bool grows);
+    void write_chunk(std::span<const std::byte> stored, hsize_t rows);
+    File* file_;
+    std::string object_;
+    Handle type_;
+    Extent row_;
+    Storage storage_;
+    std::size_t value_bytes_;
+    hsize_t row_bytes_, chunk_rows_;
+    hsize_t rows_ = 0, written_ = 0;
+    std::vector<std::byte> rest_;  ///< the last rows, at most a chunk
+    std::optional<Dataset> table_;
+};
+
 template <class Number>
 void File::write(const std::string& object, const std::vector<Number>& values, const Extent& row) {
-    const Handle type = number_type<Number>();
-    Dataset table = create_rows(object, type, row);
-    table.append(type, values.data(), values.size() / values_in(row));
+    NewTable table(*this, object, number_type<Number>(), row);
+    table.append(values.data(), values.size() / values_in(row));
     table.close();
 }
 

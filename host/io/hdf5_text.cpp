@@ -43,8 +43,7 @@ Handle File::attribute(const std::string& object, const std::string& name) const
 
 void File::write_attribute(const std::string& object, const std::string& name, hid_t type, hid_t space,
                            const void* data) {
-    Handle owner = this->object(object);
-    if (H5Aexists(owner, name.c_str()) > 0) H5Adelete(owner, name.c_str());
+    Handle owner(H5Oopen(id_, object.c_str(), H5P_DEFAULT), H5Oclose);
     Handle attribute(H5Acreate2(owner, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     if (attribute < 0 || H5Awrite(attribute, type, data) < 0)
         fail(where(object), "attribute '" + name + "' cannot be written");
@@ -119,9 +118,8 @@ void File::write_texts(const std::string& object, const std::vector<std::string>
     std::string padded;
     padded.reserve(length * texts.size());
     for (const auto& text : texts) padded += text + std::string(length - text.size(), '\0');
-    const Handle type = text_type(length);
-    Dataset table = create_rows(object, type, row);
-    table.append(type, padded.data(), texts.size() / values_in(row));
+    NewTable table(*this, object, text_type(length), row);
+    table.append(padded.data(), texts.size() / values_in(row));
     table.close();
 }
 

@@ -22,51 +22,59 @@ std::string parameters_path(std::size_t replica);
 /// Version of this layout; readers refuse later ones.
 inline constexpr long result_format = 1;
 
-/// Writes replica by replica, scan by scan. The bytes depend only on the content, not on the order of the
-/// calls: an interrupted and resumed run gives the same file as an uninterrupted one.
+/// Writes replica after replica. The bytes depend only on the content: an interrupted and resumed run gives
+/// the same file as an uninterrupted one.
 class ResultWriter {
 public:
-    /// Starts a file with the provenance and the recordings of `run`, still without scans. `between` is
-    /// called between tables and scans; what it throws is passed on.
+    /// Starts a file with the provenance of `run`. `between` is called between replicas and their scans; what
+    /// it throws is passed on.
     ResultWriter(
-        NewFile& out, const Run& run, std::function<void()> between = [] {});
-    void append(std::size_t replica, Scan scan);
-    /// Call after the last scan of a replica; `failure` says why it stopped early, if it did.
-    void end(std::size_t replica, const std::optional<Failure>& failure);
+        NewFile& out, const Run& run, h5::Storage storage = h5::Storage::compressed,
+        std::function<void()> between = [] {});
+    /// Starts the next replica, with the properties of `recording`.
+    void begin(const Recording& recording);
+    /// Adds the next scans of the replica.
+    void append(const StoredScans& scans);
+    /// Ends the replica; `failure` says why it stopped early, if it did.
+    void end(const std::optional<Failure>& failure);
     void close();
 
 private:
+    /// Positions or rotations.
+    struct Vectors {
+        h5::NewTable value;
+        std::vector<long> step{};
+        std::vector<double> time{};
+    };
+    /// Of the current replica.
     struct Tables {
-        h5::Dataset scans, contacts, contact_offset;
-        std::vector<h5::Dataset> position, rotation;  ///< value, step, time; none if there are no grains
-        std::size_t grains = 0;
-        std::string label;
-        long contact_count = 0;
+        h5::NewTable scans, contacts;
+        Vectors position, rotation;
+        std::size_t grains;
+        std::vector<long> contact_offset{0};
     };
     void write_provenance(const Run& run);
-    Tables make_tables(std::size_t replica, const Recording& recording);
-    void flush(Tables& tables);
-    void flush_scans(Tables& tables);
-    /// For positions or rotations: value, step and time, an element of H5MD.
-    std::vector<h5::Dataset> make_vectors(const std::string& group, const char* unit, std::size_t grains);
-    template <class Real>
-    void flush_vectors(std::vector<h5::Dataset>& tables, std::vector<Vec3> Scan::*vectors, long first_row);
-    template <class Real>
-    void flush_contacts(Tables& tables);
+    void write_properties(const Recording& recording);
+    void close_vectors(const std::string& group, const char* unit, Vectors& vectors);
 
     h5::File file_;
+    h5::Storage storage_;
     std::function<void()> between_;
-    std::vector<Tables> tables_;
-    std::vector<Scan> pending_;  ///< written together, in blocks whose size does not depend on the source
-    h5::Handle scan_row_, contact_row_;
+    std::size_t replica_ = 0;  ///< the current one
+    std::optional<Tables> tables_;
     bool is_double_;  ///< positions and contacts are stored as double, otherwise as float
 };
 
-/// Writes a result file with the content from `write`, reads all of it back, and moves it into place. Throws
-/// Interrupted, and leaves no file, if `stop_wanted` becomes true meanwhile.
-void write_result_file(const std::filesystem::path& file, const Run& run,
+/// Writes a result file with the content from `write` and moves it into place. Throws Interrupted, and leaves
+/// no file, if `stop_wanted` becomes true meanwhile.
+void write_result_file(const std::filesystem::path& file, const Run& run, h5::Storage storage,
                        const std::function<void(ResultWriter&)>& write,
                        const StopWanted& stop_wanted = never_stop);
+/// Writes the header of a run with these scans of its replicas.
+void write_run(const std::filesystem::path& file, const Run& header, const std::vector<StoredScans>& scans,
+               h5::Storage storage);
+/// An empty one for each replica.
+std::vector<StoredScans> stored_scans(const Run& header);
 
 class ResultFile {
 public:

@@ -45,19 +45,26 @@ bool belongs_to_a_run(const fs::path& file) {
            file == parts_folder(file.parent_path());
 }
 
+/// Appends the scans of replica `r` of a file.
+void append(ResultWriter& writer, const std::vector<Scan>& scans, StoredScans stored) {
+    for (const Scan& scan : scans) stored.append(scan);
+    writer.append(stored);
+}
+
 /// Replica by replica, so that only one replica of one segment is in memory.
 void merge(const std::vector<fs::path>& files, const fs::path& merged, const StopWanted& stop_wanted) {
     const Run run = read_run_header(files);
     ResultFiles segments(files);
+    const auto empty = stored_scans(run);
     const auto write = [&](ResultWriter& writer) {
         for (std::size_t r = 0; r < run.recordings.size(); ++r) {
+            writer.begin(run.recordings[r]);
             for (std::size_t k = 0; k < files.size(); ++k)
-                for (Scan& scan : segments.open(k).scans(run.recordings[r], r, ReadWhat::everything))
-                    writer.append(r, std::move(scan));
-            writer.end(r, run.recordings[r].failure);
+                append(writer, segments.open(k).scans(run.recordings[r], r, ReadWhat::everything), empty[r]);
+            writer.end(run.recordings[r].failure);
         }
     };
-    write_result_file(merged, run, write, stop_wanted);
+    write_result_file(merged, run, h5::Storage::compressed, write, stop_wanted);
 }
 
 /// Reads part `number`. Errors in its file are InputErrors, as for any other damaged file.
@@ -145,9 +152,14 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
 
 bool ResultFolder::is_finished() const { return is_there(run_file(folder_)); }
 
-void ResultFolder::append_segment(const Run& scans_since_last) {
-    write_run(segment_file(folder_, segments_), scans_since_last);
+void ResultFolder::append_segment(const Run& header, const std::vector<StoredScans>& scans_since_last) {
+    write_run(segment_file(folder_, segments_), header, scans_since_last, h5::Storage::plain);
     ++segments_;
+}
+
+void ResultFolder::finish(const Run& header, const std::vector<StoredScans>& all_scans) {
+    expect_alone();
+    write_run(run_file(folder_), header, all_scans, h5::Storage::compressed);
 }
 
 void ResultFolder::drop_segments_from(int index) {
@@ -189,17 +201,18 @@ void ResultFolder::remove_segments() {
 void ResultFolder::finish(const StopWanted& stop_wanted) {
     const auto segments = segment_files(folder_);
     if (segments.empty()) throw RunError(folder_.string() + ": nothing was recorded");
+    expect_alone();
+    merge(segments, run_file(folder_), stop_wanted);
+    remove_segments();
+}
+
+void ResultFolder::expect_alone() const {
     // Locks exclude others, but not on every network file system.
     if (is_there(run_file(folder_)) || is_there(parts_folder(folder_)))
         throw RunError(
             folder_.string() +
             ": another program has begun a run there meanwhile: both are left as they are; move one "
             "of them (segments and checkpoints; parts/, run.h5 and plate.csv) elsewhere");
-    if (segments.size() == 1)
-        move_file(segments.front(), run_file(folder_));
-    else
-        merge(segments, run_file(folder_), stop_wanted);
-    remove_segments();
 }
 
 fs::path parts_folder(const fs::path& folder) { return folder / "parts"; }
@@ -216,18 +229,20 @@ void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged, con
             std::ranges::move(part.recordings, std::back_inserter(all.recordings));
         first.push_back(all.recordings.size());
     }
+    const auto empty = stored_scans(all);
     const auto write = [&](ResultWriter& writer) {
         for (std::size_t p = 0; p < parts.size(); ++p) {
             const ResultFile file = from_part(p, [&] { return ResultFile(parts[p]); });
             for (std::size_t r = first[p]; r < first[p + 1]; ++r) {
                 auto scans = from_part(
                     p, [&] { return file.scans(all.recordings[r], r - first[p], ReadWhat::everything); });
-                for (Scan& scan : scans) writer.append(r, std::move(scan));
-                writer.end(r, all.recordings[r].failure);
+                writer.begin(all.recordings[r]);
+                append(writer, scans, empty[r]);
+                writer.end(all.recordings[r].failure);
             }
         }
     };
-    write_result_file(merged, all, write, stop_wanted);
+    write_result_file(merged, all, h5::Storage::compressed, write, stop_wanted);
 }
 
 }  // namespace mcdem::io

@@ -8,6 +8,7 @@
 #include "core/recording.h"
 #include "core/stop.h"
 #include "io/folder_lock.h"
+#include "io/result_rows.h"
 
 namespace mcdem::inline io {
 
@@ -42,19 +43,23 @@ public:
     // Those with `stop_wanted` throw Interrupted, and leave the folder as it is, if it becomes true
     // meanwhile.
 
-    /// Writes the scans since the last segment, with the provenance of the run.
-    void append_segment(const Run& scans_since_last);
+    /// Writes the scans since the last segment, with the header of the run. Segments are not compressed: they
+    /// are merged soon.
+    void append_segment(const Run& header, const std::vector<StoredScans>& scans_since_last);
     /// Discards segment `index` and all later ones, which are newer than the checkpoint.
     void drop_segments_from(int index);
     /// Reads all segments. Throws InputError with the damaged one and a remedy.
     void expect_whole_segments(const StopWanted& stop_wanted) const;
     /// Merges all segments into run.h5 and removes them. Needs memory for one segment.
     void finish(const StopWanted& stop_wanted = never_stop);
+    /// Writes run.h5 of a run without segments.
+    void finish(const Run& header, const std::vector<StoredScans>& all_scans);
 
 private:
     ResultFolder(std::filesystem::path folder, FolderLock lock)
         : folder_(std::move(folder)), lock_(std::move(lock)) {}
     void remove_segments();
+    void expect_alone() const;
     std::filesystem::path folder_;
     FolderLock lock_;
     int segments_ = 0;  ///< number of the next segment

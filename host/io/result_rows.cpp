@@ -1,6 +1,7 @@
 #include "io/result_rows.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <type_traits>
 
@@ -94,12 +95,6 @@ Vec3 vec3(const Real* from) {
 
 }  // namespace
 
-ScanRow scan_row(const Scan& scan) {
-    ScanRow row{};
-    for_each_field([&](auto, auto, auto from, auto to) { convert(scan.*from, row.*to); });
-    return row;
-}
-
 Scan scan_of(const ScanRow& row, const std::string& where) {
     if (row.phase < 0 || row.phase >= static_cast<int>(name_list<Phase>.size()))
         throw InputError(where + ": phase must be load or unload, got number " + std::to_string(row.phase));
@@ -108,18 +103,58 @@ Scan scan_of(const ScanRow& row, const std::string& where) {
     return scan;
 }
 
-template <class Real>
-ContactRow<Real> contact_row(const Contact& contact) {
-    ContactRow<Real> row{};
-    row.grain = contact.grain;
-    row.partner = contact.partner;
-    copy(contact.point, row.point);
-    copy(contact.force, row.force);
-    row.overlap = static_cast<Real>(contact.overlap);
+ScanRow scan_row(const Scan& scan) {
+    ScanRow row{};
+    for_each_field([&](auto, auto, auto from, auto to) { convert(scan.*from, row.*to); });
     return row;
 }
-template ContactRow<float> contact_row(const Contact&);
-template ContactRow<double> contact_row(const Contact&);
+
+void StoredScans::append(const Scan& scan) {
+    const ScanRow row = scan_row(scan);
+    // The only gap of the struct is before `time`.
+    constexpr std::size_t gap = offsetof(ScanRow, settled) + 1, behind = offsetof(ScanRow, time);
+    const auto* const begin = reinterpret_cast<const std::byte*>(&row);
+    scans.insert(scans.end(), begin, begin + gap);
+    scans.insert(scans.end(), begin + behind, begin + sizeof row);
+    is_double_ ? append_as<double>(scan) : append_as<float>(scan);
+}
+
+template <class Real>
+void StoredScans::append_as(const Scan& scan) {
+    append_vectors<Real>(scan, scan.position, position);
+    append_vectors<Real>(scan, scan.rotation, rotation);
+    const std::size_t size = contacts.size();
+    contacts.resize(size + scan.contacts.size() * sizeof(ContactRow<Real>));
+    auto* row = reinterpret_cast<ContactRow<Real>*>(contacts.data() + size);
+    for (const Contact& contact : scan.contacts) {
+        row->grain = contact.grain;
+        row->partner = contact.partner;
+        copy(contact.point, row->point);
+        copy(contact.force, row->force);
+        row++->overlap = static_cast<Real>(contact.overlap);
+    }
+    contact_count.push_back(static_cast<long>(scan.contacts.size()));
+}
+
+template <class Real>
+void StoredScans::append_vectors(const Scan& scan, const std::vector<Vec3>& vectors, Vectors& to) {
+    if (vectors.empty()) return;
+    if (vectors.size() != grains_)
+        throw RunError("frame " + std::to_string(scan.frame) + ": " + std::to_string(vectors.size()) +
+                       " positions or rotations for " + std::to_string(grains_) + " grains");
+    const std::size_t size = to.value.size();
+    to.value.resize(size + vectors.size() * 3 * sizeof(Real));
+    auto* at = reinterpret_cast<Real*>(to.value.data() + size);
+    for (const Vec3& vector : vectors) copy(vector, at), at += 3;
+    to.step.push_back(static_cast<long>(count()));
+    to.time.push_back(scan.time);
+}
+
+void StoredScans::clear() {
+    scans.clear(), contacts.clear(), contact_count.clear();
+    for (Vectors* vectors : {&position, &rotation})
+        vectors->value.clear(), vectors->step.clear(), vectors->time.clear();
+}
 
 template <class Real>
 Contact contact_of(const ContactRow<Real>& row, std::size_t grains, const std::string& where) {

@@ -18,7 +18,8 @@ struct ScanRow {
     double strain[6];
 };
 
-/// Real is the type in the file, float or double: rows are read and written without conversion.
+/// Real is the type in the file, float or double: rows are read and written without conversion. It has no
+/// gaps.
 template <class Real>
 struct ContactRow {
     int grain, partner;
@@ -29,9 +30,37 @@ ScanRow scan_row(const Scan& scan);
 /// Throws InputError with `where` if the row contains impossible values.
 Scan scan_of(const ScanRow& row, const std::string& where);
 template <class Real>
-ContactRow<Real> contact_row(const Contact& contact);
-template <class Real>
 Contact contact_of(const ContactRow<Real>& row, std::size_t grains, const std::string& where);
+
+/// Scans of one replica as the bytes of the tables' rows.
+class StoredScans {
+public:
+    StoredScans(std::size_t grains, bool is_double) : grains_(grains), is_double_(is_double) {}
+    /// Throws RunError if positions or rotations are not those of all grains.
+    void append(const Scan& scan);
+    /// Keeps the memory.
+    void clear();
+    std::size_t count() const { return contact_count.size(); }
+    std::size_t bytes() const { return contacts.size() + position.value.size() + rotation.value.size(); }
+
+    /// Positions or rotations: an element of H5MD.
+    struct Vectors {
+        std::vector<std::byte> value;
+        std::vector<long> step;  ///< number of the scan, from 0
+        std::vector<double> time;
+    };
+    std::vector<std::byte> scans, contacts;
+    std::vector<long> contact_count;  ///< of each scan
+    Vectors position, rotation;
+
+private:
+    template <class Real>
+    void append_as(const Scan& scan);
+    template <class Real>
+    void append_vectors(const Scan& scan, const std::vector<Vec3>& vectors, Vectors& to);
+    std::size_t grains_;
+    bool is_double_;
+};
 
 /// The fields of the rows as one HDF5 type, at the offsets of the struct.
 h5::Handle scan_row_type();

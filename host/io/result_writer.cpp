@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/atomic_file.h"
 #include "core/container.h"
 #include "core/errors.h"
@@ -10,7 +8,7 @@
 namespace mcdem::inline io {
 namespace {
 
-constexpr std::size_t block_grains = 65536;  ///< grains times scans written at once
+bool is_double(const Run& run) { return run.precision == name(Precision::double_precision); }
 
 }  // namespace
 
@@ -21,17 +19,12 @@ std::string particles_path(std::size_t replica) { return fmt::format("/particles
 std::string contacts_path(std::size_t replica) { return fmt::format("/contacts/replica_{:05}", replica); }
 std::string parameters_path(std::size_t replica) { return fmt::format("/parameters/replica_{:05}", replica); }
 
-ResultWriter::ResultWriter(NewFile& out, const Run& run, std::function<void()> between)
+ResultWriter::ResultWriter(NewFile& out, const Run& run, h5::Storage storage, std::function<void()> between)
     : file_(h5::File::create(out)),
+      storage_(storage),
       between_(std::move(between)),
-      scan_row_(scan_row_type()),
-      is_double_(run.precision == name(Precision::double_precision)) {
-    contact_row_ = is_double_ ? contact_row_type<double>() : contact_row_type<float>();
+      is_double_(is_double(run)) {
     write_provenance(run);
-    for (std::size_t r = 0; r < run.recordings.size(); ++r) {
-        between_();
-        tables_.push_back(make_tables(r, run.recordings[r]));
-    }
 }
 
 void ResultWriter::write_provenance(const Run& run) {
@@ -57,12 +50,12 @@ void ResultWriter::write_provenance(const Run& run) {
         file_.set_attribute("/contacts", "unit " + field, unit);
 }
 
-ResultWriter::Tables ResultWriter::make_tables(std::size_t replica, const Recording& recording) {
-    const std::string particles = particles_path(replica), contacts = contacts_path(replica);
+void ResultWriter::write_properties(const Recording& recording) {
+    const std::string particles = particles_path(replica_);
     std::vector<std::string> parameters;
     for (const auto& [key, value] : recording.parameters)
         parameters.insert(parameters.end(), {key, parameter_text(value)});
-    file_.write_texts(parameters_path(replica), parameters, {2});
+    file_.write_texts(parameters_path(replica_), parameters, {2});
 
     file_.make_group(particles + "/box");
     file_.set_attribute(particles, "label", recording.label);
@@ -77,154 +70,122 @@ ResultWriter::Tables ResultWriter::make_tables(std::size_t replica, const Record
         std::vector<double>{recording.box.size_x, recording.box.size_y, recording.plate_start});
     file_.write(particles + "/diameter", recording.diameter);
     file_.set_attribute(particles + "/diameter", "unit", std::string_view("m"));
-    if (!recording.species_names.empty()) {
-        file_.write(particles + "/species", recording.species);
-        file_.write_texts(particles + "/species_names", recording.species_names);
-    }
-
-    const hsize_t grains = recording.diameter.size();
-    Tables tables{file_.create_rows(observables_path(replica), packed(scan_row_), {}),
-                  file_.create_rows(contacts + "/contact", packed(contact_row_), {}),
-                  file_.create_rows(contacts + "/offset", h5::number_type<long>(), {}),
-                  {},
-                  {},
-                  grains,
-                  recording.label,
-                  0};
-    if (grains > 0) {
-        tables.position = make_vectors(particles + "/position", "m", grains);
-        tables.rotation = make_vectors(particles + "/rotation", "rad", grains);
-    }
-    const long none = 0;
-    tables.contact_offset.append(h5::number_type<long>(), &none, 1);
-    return tables;
+    if (recording.species_names.empty()) return;
+    file_.write(particles + "/species", recording.species);
+    file_.write_texts(particles + "/species_names", recording.species_names);
 }
 
-std::vector<h5::Dataset> ResultWriter::make_vectors(const std::string& group, const char* unit,
-                                                    std::size_t grains) {
-    const h5::Handle real = is_double_ ? h5::number_type<double>() : h5::number_type<float>();
-    std::vector<h5::Dataset> tables;
-    tables.push_back(file_.create_rows(group + "/value", real, {grains, 3}));
-    tables.push_back(file_.create_rows(group + "/step", h5::number_type<long>(), {}));
-    tables.push_back(file_.create_rows(group + "/time", h5::number_type<double>(), {}));
+void ResultWriter::begin(const Recording& recording) {
+    between_();
+    write_properties(recording);
+    const std::string particles = particles_path(replica_), contacts = contacts_path(replica_);
+    const auto table = [&](const std::string& object, h5::Handle type, h5::Extent row) {
+        return h5::NewTable(file_, object, std::move(type), std::move(row), storage_);
+    };
+    const auto real = [&] { return is_double_ ? h5::number_type<double>() : h5::number_type<float>(); };
+    const h5::Extent vectors{recording.diameter.size(), 3};
+    tables_ = Tables{
+        table(observables_path(replica_), packed(scan_row_type()), {}),
+        table(contacts + "/contact", is_double_ ? contact_row_type<double>() : contact_row_type<float>(), {}),
+        {table(particles + "/position/value", real(), vectors)},
+        {table(particles + "/rotation/value", real(), vectors)},
+        recording.diameter.size()};
+}
+
+/// Scan by scan, so that the order of the chunks in the file does not depend on the calls.
+void ResultWriter::append(const StoredScans& scans) {
+    between_();
+    Tables& to = *tables_;
+    const auto first = static_cast<long>(to.contact_offset.size()) - 1;
+    const std::byte *row = scans.scans.data(), *contact = scans.contacts.data();
+    const auto vectors = [&](const StoredScans::Vectors& from, Vectors& to) {
+        return [&, next = std::size_t{0}, at = from.value.data()](long scan) mutable {
+            if (next == from.step.size() || from.step[next] != scan) return;
+            at = to.value.append(at, 1);
+            to.step.push_back(first + scan);
+            to.time.push_back(from.time[next++]);
+        };
+    };
+    auto position = vectors(scans.position, to.position), rotation = vectors(scans.rotation, to.rotation);
+    for (long scan = 0; scan < static_cast<long>(scans.count()); ++scan) {
+        row = to.scans.append(row, 1);
+        position(scan), rotation(scan);
+        const long count = scans.contact_count[static_cast<std::size_t>(scan)];
+        contact = to.contacts.append(contact, static_cast<hsize_t>(count));
+        to.contact_offset.push_back(to.contact_offset.back() + count);
+    }
+}
+
+/// An element of H5MD.
+void ResultWriter::close_vectors(const std::string& group, const char* unit, Vectors& vectors) {
+    vectors.value.close();
+    file_.write(group + "/step", vectors.step);
+    file_.write(group + "/time", vectors.time);
     file_.set_attribute(group + "/value", "unit", std::string_view(unit));
     file_.set_attribute(group + "/time", "unit", std::string_view("s"));
-    return tables;
 }
 
-void ResultWriter::append(std::size_t replica, Scan scan) {
+void ResultWriter::end(const std::optional<Failure>& failure) {
     between_();
-    Tables& tables = tables_.at(replica);
-    for (const auto* vectors : {&scan.position, &scan.rotation})
-        if (!vectors->empty() && vectors->size() != tables.grains)
-            throw RunError(fmt::format("{}: '{}', frame {}: {} positions or rotations for {} grains",
-                                       file_.path().string(), tables.label, scan.frame, vectors->size(),
-                                       tables.grains));
-    pending_.push_back(std::move(scan));
-    if (pending_.size() >= std::clamp<std::size_t>(block_grains / (tables.grains + 1), 1, 256)) flush(tables);
-}
-
-void ResultWriter::end(std::size_t replica, const std::optional<Failure>& failure) {
-    between_();
-    flush(tables_.at(replica));
-    if (!failure) return;
-    const std::string particles = particles_path(replica);
-    file_.set_attribute(particles, "failure_cause", failure->cause);
-    file_.set_attribute(particles, "failure_step", std::vector<long>{failure->step});
-    file_.set_attribute(particles, "failure_grain", std::vector<long>{failure->grain});
-}
-
-void ResultWriter::flush(Tables& tables) {
-    const long first_row = static_cast<long>(tables.scans.rows());
-    if (is_double_) {
-        flush_vectors<double>(tables.position, &Scan::position, first_row);
-        flush_vectors<double>(tables.rotation, &Scan::rotation, first_row);
-        flush_contacts<double>(tables);
-    } else {
-        flush_vectors<float>(tables.position, &Scan::position, first_row);
-        flush_vectors<float>(tables.rotation, &Scan::rotation, first_row);
-        flush_contacts<float>(tables);
+    const std::string particles = particles_path(replica_);
+    Tables& tables = *tables_;
+    for (auto* table : {&tables.scans, &tables.contacts, &tables.position.value, &tables.rotation.value})
+        table->finish();
+    tables.scans.close();
+    tables.contacts.close();
+    file_.write(contacts_path(replica_) + "/offset", tables.contact_offset);
+    if (tables.grains > 0) {
+        close_vectors(particles + "/position", "m", tables.position);
+        close_vectors(particles + "/rotation", "rad", tables.rotation);
     }
-    flush_scans(tables);
-    pending_.clear();
-}
-
-void ResultWriter::flush_scans(Tables& tables) {
-    std::vector<ScanRow> rows;
-    for (const Scan& scan : pending_) rows.push_back(scan_row(scan));
-    tables.scans.append(scan_row_, rows.data(), rows.size());
-}
-
-template <class Real>
-void ResultWriter::flush_vectors(std::vector<h5::Dataset>& tables, std::vector<Vec3> Scan::*vectors,
-                                 long first_row) {
-    std::vector<Real> value;
-    std::vector<double> time;
-    std::vector<long> step;
-    for (std::size_t s = 0; s < pending_.size(); ++s) {
-        if ((pending_[s].*vectors).empty()) continue;
-        for (const Vec3& x : pending_[s].*vectors)
-            for (double coordinate : x) value.push_back(static_cast<Real>(coordinate));
-        step.push_back(first_row + static_cast<long>(s));
-        time.push_back(pending_[s].time);
+    if (failure) {
+        file_.set_attribute(particles, "failure_cause", failure->cause);
+        file_.set_attribute(particles, "failure_step", std::vector<long>{failure->step});
+        file_.set_attribute(particles, "failure_grain", std::vector<long>{failure->grain});
     }
-    if (step.empty()) return;
-    tables[0].append(h5::number_type<Real>(), value.data(), step.size());
-    tables[1].append(h5::number_type<long>(), step.data(), step.size());
-    tables[2].append(h5::number_type<double>(), time.data(), time.size());
+    tables_.reset();
+    ++replica_;
 }
 
-template <class Real>
-void ResultWriter::flush_contacts(Tables& tables) {
-    std::vector<ContactRow<Real>> rows;
-    std::vector<long> offset;
-    for (const Scan& scan : pending_) {
-        for (const Contact& contact : scan.contacts) rows.push_back(contact_row<Real>(contact));
-        offset.push_back(tables.contact_count + static_cast<long>(rows.size()));
-    }
-    tables.contact_count += static_cast<long>(rows.size());
-    tables.contacts.append(contact_row_, rows.data(), rows.size());
-    tables.contact_offset.append(h5::number_type<long>(), offset.data(), offset.size());
-}
+void ResultWriter::close() { file_.close(); }
 
-void ResultWriter::close() {
-    for (Tables& tables : tables_) {
-        between_();
-        for (h5::Dataset* table : {&tables.scans, &tables.contacts, &tables.contact_offset}) table->close();
-        for (auto* vectors : {&tables.position, &tables.rotation})
-            for (h5::Dataset& table : *vectors) table.close();
-    }
-    file_.close();
-}
-
-void write_result_file(const std::filesystem::path& file, const Run& run,
+void write_result_file(const std::filesystem::path& file, const Run& run, h5::Storage storage,
                        const std::function<void(ResultWriter&)>& write, const StopWanted& stop_wanted) {
     const auto check_stop = [&] {
         if (stop_wanted()) throw Interrupted();
     };
     check_stop();
     replace_file(file, [&](NewFile& out) {
-        ResultWriter writer(out, run, check_stop);
+        ResultWriter writer(out, run, storage, check_stop);
         write(writer);
         writer.close();
         out.close();
-        try {
-            ResultFile(out.temporary()).expect_whole(check_stop);
-        } catch (const InputError& error) {
-            throw RunError(fmt::format("{}: the file read back differs from the data written: {}",
-                                       file.string(), error.what()));
+    });
+}
+
+std::vector<StoredScans> stored_scans(const Run& header) {
+    std::vector<StoredScans> scans;
+    for (const Recording& recording : header.recordings)
+        scans.emplace_back(recording.diameter.size(), is_double(header));
+    return scans;
+}
+
+void write_run(const std::filesystem::path& file, const Run& header, const std::vector<StoredScans>& scans,
+               h5::Storage storage) {
+    write_result_file(file, header, storage, [&](ResultWriter& writer) {
+        for (std::size_t r = 0; r < header.recordings.size(); ++r) {
+            writer.begin(header.recordings[r]);
+            writer.append(scans[r]);
+            writer.end(header.recordings[r].failure);
         }
     });
 }
 
 void write_run(const std::filesystem::path& file, const Run& run) {
-    const auto write = [&](ResultWriter& writer) {
-        for (std::size_t r = 0; r < run.recordings.size(); ++r) {
-            for (const Scan& scan : run.recordings[r].scans) writer.append(r, scan);
-            writer.end(r, run.recordings[r].failure);
-        }
-    };
-    write_result_file(file, run, write);
+    auto scans = stored_scans(run);
+    for (std::size_t r = 0; r < run.recordings.size(); ++r)
+        for (const Scan& scan : run.recordings[r].scans) scans[r].append(scan);
+    write_run(file, run, scans, h5::Storage::compressed);
 }
 
 }  // namespace mcdem::io

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,12 +17,15 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Points evenly distributed in the unit ball: a golden-angle spiral with radii from a separate sequence. In
-/// ascending order of the coordinate along `axis`.
-const std::vector<Vec3>& ball_points(int axis) {
-    static const std::array<std::vector<Vec3>, 3> points = [] {
-        constexpr int count = 512;
-        std::vector<Vec3> all;
+/// Points evenly distributed in the unit ball: a golden-angle spiral with radii from a separate sequence.
+struct BallPoints {
+    static constexpr int count = 512;
+    using Some = std::bitset<count>;
+    std::vector<Vec3> all;
+    std::array<std::vector<double>, 3> sorted;  ///< coordinates along each axis, ascending
+    std::array<std::vector<Some>, 3> lowest;    ///< the points of the n lowest coordinates along each axis
+
+    BallPoints() {
         for (int k = 0; k < count; ++k) {
             const double z = 1 - (2 * k + 1.0) / count;
             const double angle = k * std::numbers::pi * (3 - std::sqrt(5.0));
@@ -29,12 +33,31 @@ const std::vector<Vec3>& ball_points(int axis) {
             const double rim = std::sqrt(1 - z * z);
             all.push_back(shell * Vec3(rim * std::cos(angle), rim * std::sin(angle), z));
         }
-        std::array<std::vector<Vec3>, 3> sorted{all, all, all};
-        for (int k = 0; k < 3; ++k) std::ranges::sort(sorted[k], {}, [&](const Vec3& p) { return p[k]; });
-        return sorted;
-    }();
-    return points[axis];
-}
+        for (int axis = 0; axis < 3; ++axis) {
+            std::vector<std::size_t> order(count);
+            std::iota(order.begin(), order.end(), 0);
+            std::ranges::sort(order, {}, [&](std::size_t k) { return all[k][axis]; });
+            lowest[axis].emplace_back();
+            for (const std::size_t k : order) {
+                sorted[axis].push_back(all[k][axis]);
+                lowest[axis].push_back(lowest[axis].back());
+                lowest[axis].back().set(k);
+            }
+        }
+    }
+
+    /// Those between two coordinates of a sphere's axis.
+    Some between(double low, double high, int axis, double centre, double radius) const {
+        const auto& all = sorted[axis];
+        const auto number_until = [&](auto is_before) {
+            return std::ranges::partition_point(all,
+                                                [&](double x) { return is_before(centre + radius * x); }) -
+                   all.begin();
+        };
+        return lowest[axis][number_until([&](double at) { return at < high; })] &
+               ~lowest[axis][number_until([&](double at) { return !(at > low); })];
+    }
+};
 
 /// The region farther than a margin from every wall.
 class Interior {
@@ -60,24 +83,15 @@ public:
         if ((last.array() <= low_.array()).any() || (first.array() >= high_.array()).any() ||
             out - radius >= radius_)
             return 0;
-        int cuts = out + radius > radius_, axis = 0;  // walls other than that along `axis`
-        bool any = false;
+        static const BallPoints points;
+        BallPoints::Some inside = BallPoints::Some().set();
         for (int k = 0; k < 3; ++k)
-            if (first[k] < low_[k] || last[k] > high_[k]) any ? ++cuts : (any = true, axis = k);
-        if (!any && cuts == 0) return 1;
-        // Along one axis the points inside are neighbours in its order.
-        const auto& points = ball_points(axis);
-        const auto at = [&](const Vec3& point) { return centre[axis] + radius * point[axis]; };
-        const auto begin =
-            std::ranges::partition_point(points, [&](const Vec3& p) { return !(at(p) > low_[axis]); });
-        const auto end =
-            std::partition_point(begin, points.end(), [&](const Vec3& p) { return at(p) < high_[axis]; });
-        const auto inside = cuts == 0 ? end - begin : std::count_if(begin, end, [&](const Vec3& point) {
-            const Vec3 at = centre + radius * point;
-            return (at.array() > low_.array()).all() && (at.array() < high_.array()).all() &&
-                   from_axis(box_, at).norm() < radius_;
-        });
-        return static_cast<double>(inside) / static_cast<double>(points.size());
+            if (first[k] < low_[k] || last[k] > high_[k])
+                inside &= points.between(low_[k], high_[k], k, centre[k], radius);
+        if (out + radius > radius_)
+            for (std::size_t k = 0; k < points.all.size(); ++k)
+                if (!(from_axis(box_, centre + radius * points.all[k]).norm() < radius_)) inside.reset(k);
+        return static_cast<double>(inside.count()) / BallPoints::count;
     }
 
 private:

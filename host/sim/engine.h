@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -122,12 +123,13 @@ public:
     }
 
     /// Starts to copy the states after the last interval from the device. `replicas` must be ascending;
-    /// adjacent replicas are read together.
-    std::vector<Readings> begin_reading(const std::vector<int>& replicas) const;
+    /// adjacent replicas are read together. Returns the number of readings, the first of `read`, whose memory
+    /// is used again.
+    std::size_t begin_reading(const std::vector<int>& replicas, std::vector<Readings>& read) const;
     /// Calls `use` for every replica of those read, the i-th of all, on all cores and in any order. It may
     /// call take_state(). Another interval may have begun, but not finished, since the reading began.
     void for_each_state(
-        const std::vector<Readings>& read,
+        std::span<const Readings> read,
         const std::function<void(std::size_t i, int replica, const Readings& read)>& use) const;
     /// Replaces positions, rotations and contacts of `scan`; their memory is used again.
     void take_state(int replica, const Readings& read, Scan& scan) const;
@@ -211,7 +213,7 @@ private:
     }
     std::vector<double> reals(const std::vector<std::byte>& bytes, std::size_t first,
                               std::size_t count) const;
-    Readings begin_reading(int first_replica, int last_replica) const;
+    void begin_reading(int first_replica, int last_replica, Readings& read) const;
     template <class Real>
     void take_state_of(int replica, const Readings& read, Scan& scan) const;
     template <class Real>

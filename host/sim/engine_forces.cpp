@@ -33,7 +33,8 @@ GrainForces Engine::forces_at(int replica, const GrainMotion& motion, double dur
 
 /// Sums over all slots, because adhesion acts across gaps.
 GrainForces Engine::forces(int replica, const std::vector<Vec3>& position) const {
-    const Readings read = begin_reading(replica, replica);
+    Readings read;
+    begin_reading(replica, replica, read);
     const auto first = static_cast<std::size_t>(layout_.first_grain[replica]);
     const auto padded = static_cast<std::size_t>(layout_.first_grain[replica + 1]) - first;
     const std::size_t count = padded * static_cast<std::size_t>(build_.slots);

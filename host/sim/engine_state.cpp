@@ -116,11 +116,10 @@ template void Engine::write_reals(Field<Motion>&, std::size_t, const std::vector
 template void Engine::write_reals(Field<Tracks>&, std::size_t, const std::vector<double>&);
 template void Engine::write_reals(Field<ContactMemory>&, std::size_t, const std::vector<double>&);
 
-Readings Engine::begin_reading(int first_replica, int last_replica) const {
+void Engine::begin_reading(int first_replica, int last_replica, Readings& read) const {
     const auto first = static_cast<std::size_t>(layout_.first_grain[first_replica]);
     const auto grains = static_cast<std::size_t>(layout_.first_grain[last_replica + 1]) - first;
     const auto slots = static_cast<std::size_t>(build_.slots), real = size_of_real();
-    Readings read;
     read.first_replica = first_replica;
     read.last_replica = last_replica;
     read.first_grain = first;
@@ -134,21 +133,21 @@ Readings Engine::begin_reading(int first_replica, int last_replica) const {
     begin(fields_.overlap, read.overlap, slots * real);
     begin(fields_.arm, read.arm, slots * real);
     begin(fields_.partner, read.partner, slots * sizeof(int));
-    return read;
 }
 
-std::vector<Readings> Engine::begin_reading(const std::vector<int>& replicas) const {
+std::size_t Engine::begin_reading(const std::vector<int>& replicas, std::vector<Readings>& read) const {
     expects(std::ranges::is_sorted(replicas), "replicas are read in ascending order");
-    std::vector<Readings> read;
+    std::size_t count = 0;
     for (std::size_t begin = 0, end; begin < replicas.size(); begin = end) {
         end = begin + 1;
         while (end < replicas.size() && replicas[end] == replicas[end - 1] + 1) ++end;
-        read.push_back(begin_reading(replicas[begin], replicas[end - 1]));
+        if (count == read.size()) read.emplace_back();
+        begin_reading(replicas[begin], replicas[end - 1], read[count++]);
     }
-    return read;
+    return count;
 }
 
-void Engine::for_each_state(const std::vector<Readings>& read,
+void Engine::for_each_state(std::span<const Readings> read,
                             const std::function<void(std::size_t, int replica, const Readings&)>& use) const {
     std::vector<std::pair<int, const Readings*>> states;
     for (const Readings& some : read) {
@@ -159,7 +158,8 @@ void Engine::for_each_state(const std::vector<Readings>& read,
 }
 
 ReplicaState Engine::state(int replica) const {
-    const Readings read = begin_reading(replica, replica);
+    Readings read;
+    begin_reading(replica, replica, read);
     read.copies.wait();
     Scan scan;
     take_state(replica, read, scan);
@@ -212,7 +212,8 @@ template <class Real>
 void Engine::take_contacts(int replica, const Readings& read, Scan& scan) const {
     const auto& order = layout_.order[replica];
     const auto& place = layout_.place[replica];
-    const auto slots = static_cast<std::size_t>(build_.slots), row = build_.lanes * slots;
+    const auto slots = static_cast<std::size_t>(build_.slots), lanes = static_cast<std::size_t>(build_.lanes),
+               row = lanes * slots;
     const int first_grain = layout_.first_grain[replica];
     const auto first = (static_cast<std::size_t>(first_grain) - read.first_grain) * slots;
     const Real *const force = numbers<Real>(read.force, 3 * first),
@@ -225,18 +226,19 @@ void Engine::take_contacts(int replica, const Readings& read, Scan& scan) const 
     scan.contacts.clear();
     for (int grain = 0; grain < static_cast<int>(order.size()); ++grain) {
         auto end = touching.begin();
-        for (std::size_t k = 0; k < slots; ++k) {
-            const std::size_t slot = build_.place_of_slot(static_cast<std::size_t>(place[grain]), k);
+        const auto at = build_.place_of_slot(static_cast<std::size_t>(place[grain]), 0), lane = at % lanes;
+        for (std::size_t slot = at; slot < at + row; slot += lanes) {
             if (!(overlap[slot] > 0)) continue;
             const int partner = partners[slot] < NO_PARTNER
                                     ? wall_partner(static_cast<Wall>(WALL_PARTNER(0) - partners[slot]))
                                     : order[partners[slot] - first_grain];
             if (is_wall(partner) || partner > grain) *end++ = {partner, slot};  // or the other grain lists it
         }
+        const Real* const forces = force + 2 * (at - lane);  // of three rows, see kernels/measure.cl
         std::sort(touching.begin(), end);
         for (auto next = touching.begin(); next != end; ++next) {
             const auto [partner, slot] = *next;
-            const Real* const along_x = &force[slot / row * 3 * row + slot % row];  // kernels/measure.cl
+            const Real* const along_x = forces + slot;
             const Vec3& centre = scan.position[grain];
             const Vec3 point = partner == wall_partner(Wall::plate)
                                    ? plate.foot(centre)

@@ -86,7 +86,7 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
     const auto results = engine_.finish_interval();
     std::size_t grains_due = 0;
     std::vector<int> due;
-    const auto read = [&] { readings_ = engine_.begin_reading(std::exchange(due, {})); };
+    const auto read = [&] { reading_count_ = engine_.begin_reading(std::exchange(due, {}), readings_); };
     for (int r = 0; r < engine_.replicas(); ++r) {
         grain_steps_ += static_cast<long>(results[r].steps) * static_cast<long>(diameter_[r].size());
         if (intervals[r].steps == 0 || runners_[r].finished()) continue;  // pass_on() may have ended it
@@ -133,7 +133,7 @@ bool Simulation::take_note(int replica, const IntervalResult& result) {
 
 void Simulation::pass_on(const ScanSink& on_scan, const FailureSink& on_failure) {
     fill_scans();
-    readings_.clear();
+    reading_count_ = 0;
     auto next = scans_.begin();
     for (Outcome& outcome : std::exchange(outcomes_, {})) {
         const int r = outcome.replica;
@@ -153,9 +153,9 @@ void Simulation::fill_scans() {
     for (const Outcome& outcome : outcomes_)
         if (outcome.scan) with_scan.push_back(&outcome);
     scans_.resize(std::max(scans_.size(), with_scan.size()));
-    engine_.for_each_state(readings_, [&](std::size_t i, int, const Readings& read) {
-        fill_scan(*with_scan[i], read, scans_[i]);
-    });
+    engine_.for_each_state(
+        std::span(readings_).first(reading_count_),
+        [&](std::size_t i, int, const Readings& read) { fill_scan(*with_scan[i], read, scans_[i]); });
 }
 
 void Simulation::fill_scan(const Outcome& outcome, const Readings& read, Scan& scan) const {
@@ -215,7 +215,7 @@ std::map<std::string, std::vector<std::byte>> Simulation::save() {
 
 void Simulation::restore(const std::map<std::string, std::vector<std::byte>>& saved) {
     outcomes_.clear();
-    readings_.clear();
+    reading_count_ = 0;
     engine_.restore(saved);
     const auto bring_back = [&](const char* name, auto& parts) {
         auto state = parts.front().state();

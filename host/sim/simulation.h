@@ -66,8 +66,9 @@ private:
     std::vector<CompliantPlate> plates_;
     std::vector<EnergyBudget> budgets_;
     std::vector<Outcome> outcomes_;   ///< not passed on yet
-    std::vector<Readings> readings_;  ///< the states for the scans among them
-    std::vector<Scan> scans_;         ///< these scans, in memory that is used again
+    std::vector<Readings> readings_;  ///< the states for the scans among them, the first of these
+    std::size_t reading_count_ = 0;
+    std::vector<Scan> scans_;  ///< these scans, in memory that is used again
     long grain_steps_ = 0;
 };
 

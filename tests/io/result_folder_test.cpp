@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/errors.h"
+#include "io/result_file.h"
 #include "io/results.h"
 #include "io/synthetic_run.h"
 
@@ -23,11 +24,19 @@ std::string message_of(const std::function<void()>& call) {
     return "no error";
 }
 
+void append_segment(ResultFolder&& folder, const Run& run) {
+    auto scans = stored_scans(run);
+    for (std::size_t r = 0; r < scans.size(); ++r)
+        for (const Scan& scan : run.recordings[r].scans) scans[r].append(scan);
+    folder.append_segment(run, scans);
+}
+void append_segment(ResultFolder& folder, const Run& run) { append_segment(std::move(folder), run); }
+
 /// Appends `run` in segments that end at these scans.
 void append_in_parts(ResultFolder& folder, const Run& run, const std::vector<std::size_t>& ends) {
     std::size_t first = 0;
     for (std::size_t end : ends) {
-        folder.append_segment(part_of(run, first, end));
+        append_segment(folder, part_of(run, first, end));
         first = end;
     }
 }
@@ -71,7 +80,7 @@ TEST(result_folder, one_segment_becomes_the_run) {
     TestFolder place;
     const auto run = synthetic_run({.precision = "float"});
     auto folder = ResultFolder::create(place / "out");
-    folder.append_segment(run);
+    append_segment(folder, run);
     folder.finish();
     expect_same(run, read_run(run_file(place / "out")), 6e-8);
 }
@@ -86,7 +95,7 @@ TEST(result_folder, resuming_deletes_segments_newer_than_the_checkpoint) {
     auto folder = ResultFolder::open_for_resume(place / "out");
     EXPECT_EQ(folder.segments(), 3);
     folder.drop_segments_from(1);
-    folder.append_segment(part_of(run, 1, 6));
+    append_segment(folder, part_of(run, 1, 6));
     EXPECT_EQ(folder.segments(), 2);
     folder.finish();
     expect_same(run, read_run(place / "out"));
@@ -95,7 +104,7 @@ TEST(result_folder, resuming_deletes_segments_newer_than_the_checkpoint) {
 TEST(result_folder, an_interrupted_finish_is_completed_by_resuming) {
     TestFolder place;
     const auto run = synthetic_run();
-    { ResultFolder::create(place / "out").append_segment(run); }
+    { append_segment(ResultFolder::create(place / "out"), run); }
     write_run(place / "out/run.h5", run);
     const auto folder = ResultFolder::open_for_resume(place / "out");
     EXPECT_TRUE(folder.is_finished());
@@ -105,7 +114,7 @@ TEST(result_folder, an_interrupted_finish_is_completed_by_resuming) {
 /// Files of others that are called like segments, and links.
 TEST(result_folder, removes_only_segments) {
     TestFolder place;
-    { ResultFolder::create(place / "out").append_segment(synthetic_run()); }
+    { append_segment(ResultFolder::create(place / "out"), synthetic_run()); }
     write_bytes(place / "out/segment-000001.h5", "my measurement");
     {
         auto folder = ResultFolder::open_for_resume(place / "out");
@@ -123,7 +132,7 @@ TEST(result_folder, removes_only_segments) {
 TEST(result_folder, refuses_to_mix_runs) {
     TestFolder place;
     const auto run = synthetic_run();
-    { ResultFolder::create(place / "out").append_segment(run); }
+    { append_segment(ResultFolder::create(place / "out"), run); }
     EXPECT_THAT(message_of([&] { ResultFolder::create(place / "out"); }), HasSubstr("already holds a run"));
     { ResultFolder::open_for_resume(place / "out").finish(); }
     EXPECT_THAT(message_of([&] { ResultFolder::create(place / "out"); }), HasSubstr("run.h5"));
@@ -185,13 +194,13 @@ TEST(result_folder, stops_between_tables_and_keeps_existing_files) {
     int looks_finishing = 0;
     {
         auto whole = ResultFolder::create(place / "whole");
-        whole.append_segment(part_of(run, 0, 3));
-        whole.append_segment(part_of(run, 3, 6));
+        append_segment(whole, part_of(run, 0, 3));
+        append_segment(whole, part_of(run, 3, 6));
         looks_finishing = looks_of([&](auto look) { whole.finish(look); });
     }
     auto stopped = ResultFolder::create(place / "stopped");
-    stopped.append_segment(part_of(run, 0, 3));
-    stopped.append_segment(part_of(run, 3, 6));
+    append_segment(stopped, part_of(run, 0, 3));
+    append_segment(stopped, part_of(run, 3, 6));
     const auto two = files("stopped");
     for (int last = 1; last <= looks_finishing; ++last) {
         stop_at(last, [&](auto look) { stopped.finish(look); });
