@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/container.h"
-#include "scene/species.h"
-
 namespace mcdem::inline sim {
 namespace {
 
@@ -13,12 +10,8 @@ namespace {
 /// of the forces, rounding and the steps make up to 1e-4 (measured with one grain, rows, crystals and
 /// packings of 514 grains in float). In the models of the half space it is an approximation: up to 0.04.
 constexpr double exact_tolerance = 0.01, rough_tolerance = 0.3;
-/// The step is shortened when this part of the tolerance is reached. A vibration of which nothing is damped
-/// away keeps what was created: of the part p of the stored energy it changes the force on a plate by
-/// sqrt(1.2 p), which is 7 % at 0.4 and 1.5 % at 0.02 of exact_tolerance.
-constexpr double first_sign = 0.4, first_sign_undamped = 0.02;
-/// Beyond this restitution contacts damp next to nothing (quasi_static.cpp).
-constexpr double undamped_from = 0.98;
+/// The step is shortened when this part of the tolerance is reached.
+constexpr double first_sign = 0.4;
 /// Coordinates of a packing in float are rounded to about 1e-6 of a radius, which is 1 % of the energy of
 /// overlaps of 3e-4 of a radius: 1e-9 E R^3 a grain. E is that of the stiffest grains: their contacts round
 /// most.
@@ -35,27 +28,10 @@ double tolerance_of(const Replica& replica) {
     return half_space || e.stiffening != 0 ? rough_tolerance : exact_tolerance;
 }
 
-/// Contacts of some pair, or with the walls, are not damped.
-bool has_undamped(const Replica& replica) {
-    double most = 0;
-    for (std::size_t i = 0; i < materials(replica).size(); ++i) {
-        if (!is_cell(replica.box)) most = std::max(most, wall_law(replica, i).restitution);
-        for (std::size_t j = 0; j <= i; ++j) most = std::max(most, pair_law(replica, i, j).restitution);
-    }
-    return most > undamped_from;
-}
-
-double first_sign_of(const Replica& replica) {
-    const double tolerance = tolerance_of(replica);
-    return tolerance *
-           (tolerance == exact_tolerance && has_undamped(replica) ? first_sign_undamped : first_sign);
-}
-
 }  // namespace
 
 EnergyBudget::EnergyBudget(const Replica& replica, const PackingScale& scale)
     : tolerance_(tolerance_of(replica)),
-      first_sign_(first_sign_of(replica)),
       least_energy_(least_energy * static_cast<double>(scale.count) * plane_modulus(stiffest(replica)) *
                     std::pow(scale.diameter / 2, 3)) {}
 
@@ -88,7 +64,7 @@ double EnergyBudget::created() const {
 EnergyBudget::Verdict EnergyBudget::verdict() const {
     const State& s = state_;
     if (!(created() <= tolerance_)) return Verdict::too_much_created;
-    const bool falls = s.most_dissipated - s.dissipated > first_sign_ * s.most_stored;
+    const bool falls = s.most_dissipated - s.dissipated > first_sign * tolerance_ * s.most_stored;
     return falls ? Verdict::creates_energy : Verdict::sound;
 }
 

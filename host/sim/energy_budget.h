@@ -47,7 +47,7 @@ public:
     static bool is_possible(const State& state);
 
 private:
-    double tolerance_, first_sign_;
+    double tolerance_;
     double least_energy_;  ///< below it rounding matters [J]
     State state_;
 };
