@@ -1,11 +1,14 @@
 // Tables that are written: whole chunks are filtered here, on all cores.
+#include <libdeflate.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <new>
 #include <utility>
 
 #include "core/in_parallel.h"
-#include "io/deflate.h"
 #include "io/hdf5.h"
 
 namespace mcdem::inline io::h5 {
@@ -58,11 +61,23 @@ std::uint32_t fletcher32(std::span<const std::byte> bytes) {
     return folded(sum_of_sums) << 16 | folded(sum);
 }
 
+/// A zlib stream (RFC 1950), which every HDF5 library can read.
+std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
+    constexpr int fastest = 1;
+    using Compressor = std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)>;
+    thread_local const Compressor compressor(libdeflate_alloc_compressor(fastest),
+                                             libdeflate_free_compressor);
+    if (!compressor) throw std::bad_alloc();
+    std::vector<std::byte> stream(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()));
+    stream.resize(
+        libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), stream.data(), stream.size()));
+    return stream;
+}
+
 /// The stored bytes of a chunk, as the library's filters make them.
 std::vector<std::byte> filtered(std::span<const std::byte> chunk, std::size_t value_size, Storage storage) {
-    auto bytes = storage == Storage::compressed
-                     ? deflated(shuffled(chunk, value_size), chunk.size() / value_size)
-                     : std::vector<std::byte>(chunk.begin(), chunk.end());
+    auto bytes = storage == Storage::compressed ? deflated(shuffled(chunk, value_size))
+                                                : std::vector<std::byte>(chunk.begin(), chunk.end());
     const std::uint32_t sum = fletcher32(bytes);
     for (int byte = 0; byte < 4; ++byte) bytes.push_back(std::byte(sum >> 8 * byte & 0xff));
     return bytes;
