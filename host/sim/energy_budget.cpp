@@ -13,7 +13,8 @@ constexpr double exact_tolerance = 0.01, rough_tolerance = 0.3;
 /// The step is shortened when this part of the tolerance is reached.
 constexpr double first_sign = 0.4;
 /// Coordinates of a packing in float are rounded to about 1e-6 of a radius, which is 1 % of the energy of
-/// overlaps of 3e-4 of a radius: 1e-9 E R^3 a grain.
+/// overlaps of 3e-4 of a radius: 1e-9 E R^3 a grain. E is that of the stiffest grains: their contacts round
+/// most.
 constexpr double least_energy = 1e-9;
 
 double tolerance_of(const Replica& replica) {
@@ -31,7 +32,7 @@ double tolerance_of(const Replica& replica) {
 
 EnergyBudget::EnergyBudget(const Replica& replica, const PackingScale& scale)
     : tolerance_(tolerance_of(replica)),
-      least_energy_(least_energy * static_cast<double>(scale.count) * scale.modulus *
+      least_energy_(least_energy * static_cast<double>(scale.count) * plane_modulus(stiffest(replica)) *
                     std::pow(scale.diameter / 2, 3)) {}
 
 void EnergyBudget::add(const IntervalResult& result) {

@@ -175,6 +175,17 @@ TEST(EnergyBudget, DissipationThatFallsIsNoticedBeforeItIsTooMuch) {
     EXPECT_EQ(budget.verdict(), Verdict::too_much_created);
 }
 
+// 1e-9 E R^3 a grain is rounded, with E/(1 - nu^2) of the stiff ones: 2e-9 * 6e7/0.91 Pa * (0.01 m)^3.
+TEST(EnergyBudget, OfUnlikeGrainsTheStiffestRoundMost) {
+    Start start =
+        free_cluster(plain_replica(), {{0, 0, 0}, {0.1, 0, 0}}, {2 * grain_radius, 2 * grain_radius});
+    start.replica.species = {{"soft", {6e4, 0.3, 1000, 0, 0, 1}}, {"stiff", {6e7, 0.3, 1000, 0, 0, 1}}};
+    start.packing.species = {0, 1};
+    EnergyBudget budget = budget_of(start);
+    budget.add(report(0, 0, 0));
+    EXPECT_NEAR(budget.state().most_stored, 2e-15 * 6e7 / 0.91, 1e-12);
+}
+
 TEST(EnergyBudget, ContactsWithoutAPotentialAreNotJudged) {
     Start start = free_cluster(plain_replica(), {{0, 0, 0}}, {2 * grain_radius});
     start.replica.effects.viscoelasticity = 0.3;
