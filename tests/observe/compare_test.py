@@ -222,12 +222,13 @@ class Comparisons(unittest.TestCase):
 
     def test_the_scale_of_lengths_does_not_matter(self):
         found = []
-        for scale in (1, 1e-3):  # grains of 21 mm and of 21 um
+        for scale, at in ((1, "21.00"), (1e-3, "0.021")):  # grains of 21 mm and of 21 um
             law = Law(stroke=0.03 * scale, touch=0.0)
             run = synthetic.run([law], 1)
             for levels, end in ((slice(None), 0.0211), (slice(6, 7), 0.03)):  # to 7 of 10 levels; one level
                 made = rows(run.recordings[0], run.recordings[0].displacement < end * scale)
                 one = self.compared(replace(run, recordings=(rows(made, np.arange(len(made.scans))[levels]),)), recording(law))
+                self.assertTrue(any(f"Rtop is taken at {at} mm" in note for note in one.notes), one.notes)
                 found.append((one.Rtop.value, one.errf.value, one.levels_errf, len(one.notes)))
         np.testing.assert_allclose(found[2:], found[:2], rtol=1e-9, atol=1e-9)
         np.testing.assert_allclose(found[0][:3], (1, 0, 15), atol=1e-9)
