@@ -61,6 +61,11 @@ GrainColumns GrainColumns::named(const std::vector<std::string>& names, const st
         throw InputError(
             fmt::format("{}: the columns must be x, y, z and diameter or radius, among others, got {}", file,
                         fmt::join(names, ", ")));
+    for (const std::string_view word : {"x", "xu", "y", "yu", "z", "zu", "diameter", "radius", "r", "id",
+                                        "species", "type", "density", "mass"})
+        if (std::ranges::count(names, word) > 1)
+            throw InputError(
+                fmt::format("{}: the columns must name {} once, got {}", file, word, fmt::join(names, ", ")));
     return {*x,
             *y,
             *z,
@@ -124,7 +129,9 @@ void GrainRows::add(const std::vector<std::string_view>& words, long line) {
     if (columns_.species) add_species(packing_, words[*columns_.species]);
     if (columns_.velocity) packing_.velocity.push_back(vector(words, *columns_.velocity, "m/s", line));
     if (columns_.spin) packing_.angular_velocity.push_back(vector(words, *columns_.spin, "1/s", line));
-    ids_.push_back(columns_.id ? to_number(words[*columns_.id]).value_or(-1) : 0);
+    const auto id = columns_.id ? to_number(words[*columns_.id]) : 0;
+    if (!id) problems_.add(line, fmt::format("id must be a number, got {}", quoted(words[*columns_.id])));
+    ids_.push_back(id.value_or(-1));
     lines_.push_back(line);
 }
 

@@ -182,7 +182,7 @@ private:
             return;
         }
         const auto id = to_whole_number(words_[0]);
-        if (!id || *id < 1)
+        if (to_number(words_[0]) && (!id || *id < 1))
             problems_.add(lines_.number(),
                           fmt::format("the atom's id must be a whole number > 0, got {}", quoted(words_[0])));
         grains_.add(words_, lines_.number());
