@@ -286,12 +286,6 @@ Dataset File::create_table(const std::string& object, hid_t type, const Extent& 
             *below_, where(object)};
 }
 
-void File::link(const std::string& object, const std::string& name) {
-    if (H5Lcreate_hard(id_, object.c_str(), id_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT) < 0 ||
-        below_->error() != 0)
-        fail(where(name), "cannot be written");
-}
-
 void File::expect_inside(const std::string& object) const {
     for (std::size_t end = 0; end != std::string::npos;) {
         end = object.find('/', end + 1);

@@ -131,8 +131,6 @@ public:
     /// cores. Filters take most of the time of writing, and the library would use one core.
     void add_chunk(class NewTable& table, std::vector<std::byte> bytes);
     void write_chunks();
-    /// A second name of an object.
-    void link(const std::string& object, const std::string& name);
     Dataset dataset(const std::string& object) const;
     /// Names of all tables of the file.
     std::vector<std::string> tables() const;
