@@ -96,17 +96,25 @@ TEST(Bits, StatesReadTogetherEqualStatesReadOneByOne) {
     mcdem::Engine& engine = batch.engine();
     for (const std::vector<int>& replicas :
          {std::vector{0, 1, 2, 3, 4, 5, 6}, std::vector{1, 2, 5}, std::vector{6}, std::vector<int>{}}) {
-        std::vector<mcdem::ReplicaState> alone, found(replicas.size());
+        std::vector<mcdem::ReplicaState> alone;
+        std::vector<mcdem::Scan> found(replicas.size());
         for (const int r : replicas) alone.push_back(engine.state(r));
-        const auto read = engine.begin_reading(replicas);
+        std::vector<mcdem::Readings> read;
+        const std::size_t readings = engine.begin_reading(replicas, read);
         std::vector<mcdem::StepInterval> next;
         for (int r = 0; r < engine.replicas(); ++r) next.push_back({10, batch.start(r).replica.plate.start});
         engine.begin_interval(next);
-        engine.for_each_state(read,
-                              [&](std::size_t i, mcdem::ReplicaState state) { found[i] = std::move(state); });
+        engine.for_each_state(std::span(read).first(readings),
+                              [&](std::size_t i, int r, const mcdem::Readings& some) {
+                                  EXPECT_EQ(r, replicas[i]);
+                                  engine.take_state(r, some, found[i]);
+                              });
         engine.finish_interval();
         for (std::size_t i = 0; i < replicas.size(); ++i) {
-            EXPECT_TRUE(same_bits(found[i], alone[i])) << replicas[i];
+            const mcdem::ReplicaState together{found[i].position, alone[i].velocity,
+                                               alone[i].angular_velocity, found[i].rotation,
+                                               found[i].contacts};
+            EXPECT_TRUE(same_bits(together, alone[i])) << replicas[i];
             EXPECT_EQ(found[i].contacts.size(), alone[i].contacts.size());
             EXPECT_FALSE(alone[i].contacts.empty());
             EXPECT_FALSE(same_bits(engine.state(replicas[i]), alone[i])) << "nothing moved";
