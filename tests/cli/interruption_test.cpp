@@ -2,10 +2,12 @@
 // uninterrupted one.
 #include <sys/mount.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <memory>
 #include <random>
+#include <thread>
 
 #include "cli/cli_test.h"
 
@@ -259,8 +261,14 @@ public:
     }
     void empty() const { fs::remove(folder_ / "filler"); }
     /// Also affects files that are open for writing: their contents stay, new writes fail.
+    /// Waits for a thread that is still writing there.
     bool make_read_only() const {
-        return ::mount("", folder_.c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr) == 0;
+        for (int tries = 0; ::mount("", folder_.c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr) != 0;
+             ++tries) {
+            if (errno != EBUSY || tries == 300) return false;
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+        return true;
     }
     bool make_writable() const { return ::mount("", folder_.c_str(), nullptr, MS_REMOUNT, nullptr) == 0; }
 

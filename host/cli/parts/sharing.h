@@ -40,7 +40,7 @@ struct SharedWork {
     /// of the folder, or another program that uses it, is incompatible.
     std::function<std::unique_ptr<PartedWork>(std::size_t workers)> begin;
     /// Called with the device before it is used.
-    std::function<void(Device&)> check;
+    std::function<void(Device&)> check = [](Device&) {};
     /// Called after the merge, when the lock on the parts is released: reports to the user, returns the exit
     /// code.
     std::function<int()> report;
