@@ -48,6 +48,8 @@ speed = 0.1
 scans_per_stroke = 1
 stop_at_scans = true
 rate_tolerance = 0
+relax_time = 1
+settle_time = 0.5
 [numerics]
 precision = "double"
 """.format(*SOFT, *STIFF)
