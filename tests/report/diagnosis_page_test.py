@@ -106,7 +106,7 @@ class Presented(unittest.TestCase):
     def test_text_page_and_figures(self):
         self.write(sample("effect"))
         printed = self.presented()
-        figures = ("where", "which", "how_far")
+        figures = ("where", "which", "how_far", "law")
         files = ["diagnosis.json", "diagnosis.html", *(f"{name}.png" for name in figures)]
         text = diagnosis_text(read_diagnosis(self.folder / "diagnosis.json"))
         self.assertEqual(printed, text + "\nwrote\n" + "".join(f"  {self.folder / name}\n" for name in files))

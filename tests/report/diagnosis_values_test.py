@@ -117,7 +117,7 @@ class HowFar(unittest.TestCase):
 class Charts(unittest.TestCase):
     def test_have_the_values_of_the_printed_figures(self):
         d = sample("effect")
-        where, which, how_far, gap_left = diagnosis_charts(of(d))
+        where, which, how_far, gap_left, law = diagnosis_charts(of(d))
         values = values_of(d)
         scores = [[one["z_score"] for one in panel["cells"]] for panel in values["where"]["panels"]]
         maps = [trace for trace in where.figure.data if trace.type == "heatmap"]
@@ -132,6 +132,7 @@ class Charts(unittest.TestCase):
         self.assertEqual([list(trace.y) for trace in how_far.figure.data],
                          [values["how_far"]["forces"][key] for key in ("before", "after", "experiment")])
         self.assertEqual(list(gap_left.figure.data[0].x), [bar["gap_left"] for bar in values["how_far"]["bars"]])
+        self.assertEqual([list(trace.y) for trace in law.figure.data[1::2]], [curve["y"] for curve in values["law"]["curves"]])
         self.assertIn("Framed: beyond 3.9 sigma", where.caption)
         self.assertIn(d["shrink"]["held_out"], gap_left.caption)
 
@@ -147,8 +148,10 @@ class Charts(unittest.TestCase):
         self.assertEqual(names_of(bare()), [])
         d = sample("effect")
         d["shrink"]["top_force"].clear()
-        self.assertEqual(names_of(d), ["where", "which", "gap_left"])
+        self.assertEqual(names_of(d), ["where", "which", "gap_left", "law"])
         d["shrink"]["before"] = 0
+        self.assertEqual(names_of(d), ["where", "which", "law"])
+        d["contact_laws"].clear()
         self.assertEqual(names_of(d), ["where", "which"])
 
     def test_texts_are_not_interpreted(self):
