@@ -21,7 +21,7 @@ FIT = "name shift error prior unit at_bound"
 # Place in the document, its keys in their order.
 KEYS = {
     "": "verdict gap where causes explanation shrink detection_limits not_measured seconds where_threshold cells ranking nuisances "
-        "check_first missing_bins not_testable refinements next packings provenance",
+        "check_first missing_bins not_testable refinements next packings contact_laws provenance",
     "gap": "detected p_value p_omnibus p_directed",
     "where 0": WHERE,
     "cells 0": "observable phase displacement_mm z_score z_score_refitted difference",
@@ -36,6 +36,7 @@ KEYS = {
     "missing_bins 0": "of bins of_bins share for_all",
     "next 0": "what power",
     "packings 0": "experiment gap_p amplitude amplitude_error agreement_p differs",
+    "contact_laws 0": "phase displacement_mm overlap change change_error exponent exponent_error",
 }
 # Changes of the first cause, parts of the text.
 NUMBERS = [

@@ -10,7 +10,7 @@ from diagnosis_samples import VERDICTS, bare, entry, of, sample, with_texts
 from mcdem.errors import InputError
 from mcdem.report.diagnosis import diagnosis_of, read_diagnosis
 
-LATER = ("explanation", "check_first", "missing_bins", "refinements", "next", "packings")
+LATER = ("explanation", "check_first", "missing_bins", "refinements", "next", "packings", "contact_laws")
 
 
 def changed(path, value):

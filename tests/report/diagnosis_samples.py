@@ -69,7 +69,7 @@ def contact_law(phase, displacement, exponent):
 def bare(verdict="no_gap"):
     """Nothing but a verdict."""
     lists = ("where", "causes", "detection_limits", "not_measured", "cells", "ranking", "nuisances", "check_first", "missing_bins",
-             "not_testable", "refinements", "next", "packings")
+             "not_testable", "refinements", "next", "packings", "contact_laws")
     return {"verdict": verdict, "gap": {"detected": False, "p_value": 1., "p_omnibus": 1., "p_directed": 1.}, "explanation": None,
             "shrink": None, "seconds": 0., "where_threshold": 0., "provenance": {}} | {name: [] for name in lists}
 
