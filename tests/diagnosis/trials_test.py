@@ -11,6 +11,7 @@ from mcdem.diagnosis.model import Model
 from mcdem.diagnosis.trials import GRAINS_OF_A_PART, Observer, observation_name, parts_of, simulation_name
 from mcdem.errors import InputError
 from mcdem.experiment.instrument import Instrument
+from mcdem.observe.contact_residuals import GrainsAlone
 from mcdem.observe.observation import observe
 
 
@@ -165,7 +166,9 @@ class Names(unittest.TestCase):
         comparisons = [comparison, replace(comparison, discard=1), replace(comparison, grid=replace(grid, width=grid.width + 1e-9)),
                        replace(comparison, grid=replace(grid, displacement=[grid.displacement[0], grid.displacement[1] + 1e-9])),
                        *(replace(comparison, material=replace(material, **{name: math.nextafter(value, math.inf)}))
-                         for name, value in asdict(material).items())]
+                         for name, value in asdict(material).items() if name != "grains_alone"),
+                       *(replace(comparison, material=replace(material, grains_alone=alone))
+                         for alone in (GrainsAlone(1e-4), GrainsAlone(1e-4, listed=True), GrainsAlone(2e-4)))]
         instrument = self.trial.model.instrument
         instruments = [{name: math.nextafter(value, math.inf)} for name, value in vars(instrument).items() if name != "stated"]
         instruments += [{"stated": replace(MEASUREMENT, **{name: math.nextafter(value, math.inf)})} for name, value in vars(MEASUREMENT).items()]
