@@ -4,12 +4,9 @@ The regression of grain_overlaps (observe/overlap_observables.py) gives the impl
 one, corrected for the surface displacement by the other contacts. The gap of its coefficients is the difference of overlaps, measured minus
 simulated, at equal force; it becomes a difference of forces at equal overlap by Hertz's law.
 """
-from collections.abc import Sequence
-from dataclasses import dataclass
-
 import numpy as np
 
-from ..observe.contact_residuals import Material
+from ..observe.contact_residuals import Material, implied_overlap, reduced_modulus
 from ..observe.grid import bins_each, bins_of
 from ..observe.observables import index_of
 from ..results.recording import Floats
@@ -20,14 +17,6 @@ COEFFICIENTS = "overlap_offset", "overlap_slope", "overlap_curvature"
 FORCES = 0.25, 2.5  # range of contact forces that is shown, over their mean: most contacts are in it
 POINTS = 9
 HERTZ = 1.5
-
-
-@dataclass(frozen=True)
-class _Gap:
-    """Of the coefficients, at one displacement and phase."""
-
-    value: Floats  # (3,)
-    covariance: Floats  # (3, 3)
 
 
 def contact_laws(evidence: Evidence, data: GapData, material: Material, mean_diameter: float) -> tuple[ContactLaw, ...]:
@@ -41,33 +30,22 @@ def contact_laws(evidence: Evidence, data: GapData, material: Material, mean_dia
         if np.isin(chosen, data.bins).all() and np.isfinite(log_force):
             rows = data.noise[:, chosen]
             covariance = (1 + (1 / data.mean_of if data.mean_of else 0)) * rows.T @ rows / len(rows)
-            implied = _implied_overlaps(np.exp(log_force), material, mean_diameter)
+            least, most = implied_overlap(np.exp(log_force) * np.array(FORCES), reduced_modulus(material, False), mean_diameter / 4)
             bin = bins[place]
-            laws.append(_law(_Gap(data.gap[chosen], covariance), implied, bin.phase.name, millimetres(bin.displacement)))
+            laws.append(_law(data.gap[chosen], covariance, np.geomspace(least, most, POINTS), bin.phase.name, millimetres(bin.displacement)))
     return tuple(laws)
 
 
-def _implied_overlaps(mean_force: float, material: Material, diameter: float) -> Floats:
-    """(POINTS,) overlaps over R* at which Hertz's law gives a range of forces [N], for two grains of this diameter [m]."""
-    modulus, radius = material.youngs_modulus / (2 * (1 - material.poisson_ratio**2)), diameter / 4
-    least, most = ((3 * part * mean_force / (4 * modulus * radius**2)) ** (2 / 3) for part in FORCES)
-    return np.geomspace(least, most, POINTS)
-
-
-def _law(gap: _Gap, implied: Floats, phase: str, displacement_mm: float) -> ContactLaw:
-    """ln of the ratio of the forces at equal overlap is 3/2 ln(x/(x - gap)), x the implied overlap. Its slope with the logarithm of the
-    overlap is the change of the exponent. Errors to first order in the gap."""
+def _law(gap: Floats, covariance: Floats, implied: Floats, phase: str, displacement_mm: float) -> ContactLaw:
+    """Of the gap of the coefficients (3,) and its covariance (3, 3). ln of the ratio of the forces at equal overlap is 3/2 ln(x/(x - gap)), x the
+    implied overlap. Its slope with the logarithm of the overlap is the change of the exponent. Errors to first order in the gap."""
     terms = np.column_stack([np.ones_like(implied), implied, implied**2])
-    overlap = np.maximum(implied - terms @ gap.value, 0.1 * implied)  # a gap as large as the overlap has no law
+    overlap = np.maximum(implied - terms @ gap, 0.1 * implied)  # a gap as large as the overlap has no law
     ratio = HERTZ * np.log(implied / overlap)
     by_gap = HERTZ * terms / overlap[:, np.newaxis]
-    error = np.sqrt(np.einsum("ij,jk,ik->i", by_gap, gap.covariance, by_gap))
+    error = np.sqrt(np.einsum("ij,jk,ik->i", by_gap, covariance, by_gap))
     apart = np.log(overlap) - np.log(overlap).mean()
     weights = apart / (apart @ apart)
     slope = weights @ by_gap
-    return ContactLaw(phase, displacement_mm, _listed(overlap), _listed(np.expm1(ratio)), _listed(np.exp(ratio) * error),
-                      HERTZ + float(weights @ ratio), float(np.sqrt(slope @ gap.covariance @ slope)))
-
-
-def _listed(values: Sequence[float] | Floats) -> tuple[float, ...]:
-    return tuple(map(float, values))
+    return ContactLaw(phase, displacement_mm, tuple(overlap.tolist()), tuple(np.expm1(ratio).tolist()), tuple((np.exp(ratio) * error).tolist()),
+                      HERTZ + float(weights @ ratio), float(np.sqrt(slope @ covariance @ slope)))

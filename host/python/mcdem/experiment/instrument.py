@@ -4,7 +4,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtri
 
 from ..results.names import Phase, Wall
 from ..results.recording import NO_VECTORS, Contacts, Floats, Ints, Recording, Scans
@@ -93,6 +92,7 @@ def _seen(contacts: tuple[Contacts, ...], instrument: Instrument, seed: int, cen
     force = force * (gain / (1 + instrument.force_saturation * lengths(force)))[:, np.newaxis]
     there = lengths(force) >= instrument.stated.force_threshold + instrument.threshold_shift
     if instrument.lost_contacts > 0:
+        from scipy.special import ndtri  # pages, which list the effects, do without it
         there &= (partner < 0) | (keyed_normals(seed, SEEN_CONTACTS, frame, pair) >= ndtri(instrument.lost_contacts))
     frame, grain, partner, force = frame[there], grain[there], partner[there], force[there]
     error = shift[frame, grain]

@@ -78,10 +78,15 @@ def contact_residuals(seen: "SeenScans") -> ContactResiduals:
     normal_force = -np.einsum("ij,ij->i", seen.force, normal)
     tangential = seen.force + normal_force[:, np.newaxis] * normal
     modulus = np.where(walls, reduced_modulus(seen.material, True), reduced_modulus(seen.material, False))
-    size = 3 * np.abs(normal_force) / (4 * modulus * reduced_radius**2)
-    implied = np.copysign(np.cbrt(size * size), normal_force)
-    return ContactResiduals(normal, normal_force, lengths(tangential), reduced_radius, implied,
+    return ContactResiduals(normal, normal_force, lengths(tangential), reduced_radius, implied_overlap(normal_force, modulus, reduced_radius),
                             -gap / reduced_radius, _cross_contact(seen, normal, normal_force) / reduced_radius)
+
+
+def implied_overlap(force: Floats, modulus: Floats | float, reduced_radius: Floats | float) -> Floats:
+    """Overlap over R* at which Hertz's law gives a force [N], with E* [Pa] and R* [m]; negative for attraction."""
+    size = 3 * np.abs(force) / (4 * modulus * reduced_radius**2)
+    implied: Floats = np.copysign(np.cbrt(size * size), force)
+    return implied
 
 
 def reduced_radius_at(box: Box, wall: Ints, radius: Floats) -> Floats:

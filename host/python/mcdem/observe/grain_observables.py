@@ -7,7 +7,7 @@ from ..results.names import Wall
 from ..results.recording import Bools, Floats
 from .force_observables import wall_loads
 from .observables import observed
-from .position_observables import affine_map, fabric, section_load
+from .position_observables import affine_map, fabric, net_over_sum, section_load
 from .seen_scans import SeenScans
 from .touching import near_grains
 
@@ -31,18 +31,8 @@ def hertz_walls(seen: SeenScans) -> tuple[Floats, ...]:
           ("hertz_gradient", 0.01, "", "", "change of the mean Hertz's force of the overlaps with depth, over the height"),
           ("hertz_imbalance", 0.005, "", "", "sum over grains of the net Hertz's force of the overlaps, over the sum of these forces"))
 def hertz_loads(seen: SeenScans) -> tuple[Floats, ...]:
-    return section_load(seen), *fabric(seen), _imbalance(seen)
-
-
-def _imbalance(seen: SeenScans) -> Floats:
-    """Tangential forces balance the rest, and errors of the overlaps add to it."""
-    grains, shape = ~seen.is_wall, (len(seen), len(seen.diameter))
-    owner = np.concatenate([seen.of_grain(seen.grain), seen.of_grain(seen.partner)[grains]])
-    both = np.concatenate([seen.force, -seen.force[grains]])
-    net = np.column_stack([np.bincount(owner, both[:, axis], shape[0] * shape[1]) for axis in range(3)])
-    left = np.linalg.norm(net, axis=1).reshape(shape).sum(axis=1)
-    imbalance: Floats = left / np.bincount(owner // shape[1], lengths(both), shape[0])
-    return imbalance
+    # Of the imbalance: tangential forces balance the rest, and errors of the overlaps add to it.
+    return section_load(seen), *fabric(seen), net_over_sum(seen, seen.force, -1)
 
 
 @observed("grains",

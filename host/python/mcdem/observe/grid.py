@@ -4,7 +4,6 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from ..experiment.plate import scan_places
 from ..results.names import Phase
@@ -91,6 +90,7 @@ def _at_tomographs(recording: Recording, grid: Grid) -> Grid:
     seen = loads & np.array([len(at) > 0 for at in scans.position], bool)
     if not seen.any() or any(map(len, scans.contacts)) or (seen == loads).all():
         return grid
+    from scipy.optimize import linear_sum_assignment  # few measurements need it
     there, places = np.unique(recording.displacement[seen]), np.array(grid.displacement)
     old, new = linear_sum_assignment(np.abs(places[:, np.newaxis] - there))
     places[old] = there[new]

@@ -96,13 +96,17 @@ def wall_friction(seen: SeenScans) -> tuple[Floats, Floats]:
                         "contacts' torques"))
 def torque_imbalance(seen: SeenScans) -> Floats:
     """Over the radius of each grain: the torques on a grain at rest cancel. Both grains of a contact have the same one."""
-    torque = np.cross(seen.residuals.normal, seen.force)
-    size = lengths(torque)
+    return net_over_sum(seen, np.cross(seen.residuals.normal, seen.force), 1)
+
+
+def net_over_sum(seen: SeenScans, vectors: Floats, on_partner: int) -> Floats:
+    """(S,) sum over grains of the size of the net vector of their contacts, over the sum of all sizes. `vectors`: (C, 3) on the grain of each
+    contact; on its partner it is `on_partner` times that, 1 or -1."""
     grains, shape = ~seen.is_wall, (len(seen), len(seen.diameter))
     owner = np.concatenate([seen.of_grain(seen.grain), seen.of_grain(seen.partner)[grains]])
-    twice = np.concatenate([torque, torque[grains]])
-    net = np.stack([np.bincount(owner, twice[:, axis], shape[0] * shape[1]) for axis in range(3)])
+    both = np.concatenate([vectors, on_partner * vectors[grains]])
+    net = np.stack([np.bincount(owner, both[:, axis], shape[0] * shape[1]) for axis in range(3)])
     left = np.sqrt((net**2).sum(axis=0)).reshape(shape).sum(axis=1)
-    total = seen.sum(np.where(grains, 2.0, 1.0) * size)
+    total = seen.sum(np.where(grains, 2.0, 1.0) * lengths(vectors))
     imbalance: Floats = left / np.where(total > 0, total, np.nan)
     return imbalance
